@@ -19,6 +19,7 @@ import polars as pl
 import hersey
 from benchmarks.motion import DRAG, TRAIN
 from hersey.damping.candidates.candidate import all_candidates
+from hersey.life.population import weibull
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 GROUPS = ("rows", "dwells", "candidates", "draws", "specimens", "sets")
@@ -215,7 +216,7 @@ SERIES = (
         "Weibull",
         decades(10, 3e3),
         lambda n: np.random.default_rng(5).weibull(2.0, n),
-        lambda ages: hersey.weibull(ages, [True] * ages.size),
+        lambda ages: weibull(ages, [True] * ages.size),
     ),
     Series("specimens", "campaign add, six runs each", (2, 4, 8, 16), life_test, add, (32, 64)),
     Series("specimens", "life, six runs each", (2, 4, 8, 16), life_test, follow, (32, 64)),

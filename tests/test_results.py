@@ -32,10 +32,10 @@ from hersey.document.parts.motion import StickSlipPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.document.parts.study import StudyPart
-from hersey.document.parts.time_to_failure import TimeToFailurePart
 from hersey.errors import MissingFileError
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
+from hersey.life.population import weibull as population
 from hersey.motion.trajectory import Trajectory
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.schema.record import part_of
@@ -170,6 +170,10 @@ def ends() -> hersey.TimeToFailure:
     return hersey.time_to_failure(hersey.Indicators(runs, (indicator,)))
 
 
+def failures() -> hersey.FailureLaw:
+    return hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h")
+
+
 #: How each result is made, and the part of the document that holds it.
 RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "TorqueLog": (log, LogPart),
@@ -195,14 +199,18 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "AgeingMaps": (test_ageing_maps.maps, hersey.AgeingMaps),
     "LifeTest": (lambda: shipped.followed(2), LifeTestPart),
     "Population": (
-        lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
+        lambda: population([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
         PopulationPart,
     ),
+    "FailureLaw": (failures, hersey.FailureLaw),
+    "RemainingLife": (lambda: hersey.remaining_life(failures(), 5.0), hersey.RemainingLife),
+    "FleetForecast": (lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0), hersey.FleetForecast),
+    "LifeTestPlan": (lambda: hersey.life_test_plan(3.0, shape=2.0, unit="h"), hersey.LifeTestPlan),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "Growth": (growth, hersey.Growth),
     "FrictionTrend": (lambda: hersey.trend(log(), at="60 rpm"), hersey.FrictionTrend),
     "AgesAtLimit": (lambda: growth().reaches(2.0), hersey.AgesAtLimit),
-    "TimeToFailure": (ends, TimeToFailurePart),
+    "TimeToFailure": (ends, hersey.TimeToFailure),
     "ModelComparison": (models, ModelsPart),
     "FrictionCurve": (lambda: hersey.fit_friction(points()), FrictionCurve),
     "LogComparison": (lambda: hersey.compare(points(), points()), LogComparison),

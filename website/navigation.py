@@ -65,6 +65,7 @@ PARTS = (
             "moving",
             "coast-down",
             "trends",
+            "failures",
             "layouts",
             "paper",
             "growth",

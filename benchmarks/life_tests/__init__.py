@@ -13,6 +13,7 @@ campaign    one campaign by its seed: machine, specimens, ages, limits, truth
 tables      its tables of dwells with noise, its machine file and its truth as files
 slips       campaigns with one mistake each, and whether it is named
 product     hersey asked for the ages, as a row of a .jsonl
-score       the counts against the targets
+score       the counts
+page        the counts against the targets, as a page
 ==========  ============================================================================
 """

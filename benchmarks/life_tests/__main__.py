@@ -5,9 +5,11 @@ Usage:
     python -m benchmarks.life_tests run NAME FIRST LAST        ask; rows go to build/life_tests/NAME.jsonl,
                                                                and a run that was stopped goes on
     python -m benchmarks.life_tests count NAME                 the tables of rows
-    python -m benchmarks.life_tests slips NAME FIRST LAST      the same with one mistake each, and clean ones
+    python -m benchmarks.life_tests page NAME [SLIPS]          write them to benchmarks/LIFE_TESTS.md
+    python -m benchmarks.life_tests slips NAME FIRST COUNT     with one mistake each, and as many without
 
-Seeds 0 to 19 are for developing, 1000 to 1199 for the count. Nobody looks at a campaign of the latter.
+Seeds 0 to 19 are for developing, 1000 to 1199 for the count, from 2000 on for mistakes. Nobody looks at a
+campaign of the latter two.
 """
 
 from __future__ import annotations
@@ -16,8 +18,10 @@ import json
 import sys
 from pathlib import Path
 
-from benchmarks.life_tests import campaign, product, score, tables
+from benchmarks.life_tests import campaign, product, score, slips, tables
+from benchmarks.life_tests.page import page
 
+PAGE = Path("benchmarks/LIFE_TESTS.md")
 BUILD = Path("build/life_tests")
 
 
@@ -44,16 +48,37 @@ def run(name: str, seeds: range) -> None:
         print(seed, found.get("seconds", found.get("error")), flush=True)
 
 
+def run_slips(name: str, first: int, count: int) -> None:
+    """Ask hersey for as many campaigns with a mistake as clean ones."""
+    file = BUILD / f"{name}.jsonl"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    there = {json.loads(line)["seed"] for line in file.read_text().splitlines()} if file.exists() else set()
+    for number, seed in enumerate(slips.seeds(first, 2 * count)):
+        if seed in there:
+            continue
+        folder = BUILD / "slips" / f"s{seed}"
+        if not (folder / "slip.json").exists():
+            slips.write(seed, folder, slip=number < count, number=number)
+        with file.open("a") as out:
+            out.write(json.dumps(slips.row(folder)) + "\n")
+
+
 def main(arguments: list[str]) -> None:
     """Do what is asked."""
-    what, name, *ends = arguments
-    seeds = range(int(ends[0]), int(ends[1]) + 1) if ends else range(0)
+    what, name, *others = arguments
+    numbers = [int(each) for each in others if each.isdigit()]
     if what == "write":
-        write(Path(name), seeds)
+        write(Path(name), range(numbers[0], numbers[1] + 1))
     elif what == "run":
-        run(name, seeds)
+        run(name, range(numbers[0], numbers[1] + 1))
+    elif what == "slips":
+        run_slips(name, *numbers)
     elif what == "count":
-        print(score.report(score.read(BUILD / f"{name}.jsonl")))
+        rows = score.read(BUILD / f"{name}.jsonl")
+        print(slips.report(rows) if "slip" in rows[0] else score.report(rows))
+    elif what == "page":
+        mistakes = score.read(BUILD / f"{others[0]}.jsonl") if others else []
+        PAGE.write_text(page(score.read(BUILD / f"{name}.jsonl"), mistakes))
     else:
         sys.exit(__doc__)
 

@@ -65,7 +65,7 @@ class Drive:
         pressure = 1.5 * LOAD / LENGTH / (2 * half)
         flow = self.viscosity(temperature) * state.viscosity * np.asarray(speed) / 2
         number = 12 * flow * RADIUS**2 / (half**3 * pressure)
-        return 0.3 * self.film_gain * number**0.6 * half**2 / RADIUS
+        return 0.45 * self.film_gain * number**0.6 * half**2 / RADIUS
 
     def starved(self, ratio: Array) -> Array:
         """Return film over flooded film where the layer is ``ratio`` times the flooded film."""

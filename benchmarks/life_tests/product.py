@@ -12,7 +12,10 @@ Row = dict[str, Any]
 
 
 def campaign_file(folder: Path) -> Path:
-    """Return the campaign file of a folder of tables; it is made if it is not there."""
+    """Return the campaign file of a folder of tables; it is made if it is not there.
+
+    Logs that hersey refuses are left out, as `hersey campaign add --table` does; ``refused.json`` says why.
+    """
     import hersey
     from hersey.life.campaign import read_runs
 
@@ -20,16 +23,35 @@ def campaign_file(folder: Path) -> Path:
     if file.exists():
         return file
     machine = hersey.read_machine(folder / "machine.toml")
-    half = folder / "half.hersey"
+    half, refused = folder / "half.hersey", {}
     half.unlink(missing_ok=True)
     fit = None  # ages do not depend on it, and most of the time would go into it
     with hersey.Campaign.create(half) as campaign:
-        for run in read_runs(folder / "runs.csv"):
-            points = hersey.SteadyPoints.from_table(run.log).without(machine.rest)
-            fit = fit or hersey.fit(points)
-            campaign.add(points, log=run.log, unit=run.unit, age=run.age, fit=fit)
+        for run in read_runs(folder / "runs.csv").runs:
+            try:
+                points = hersey.SteadyPoints.from_table(run.log).without(machine.rest)
+                fit = fit or hersey.fit(points)
+                campaign.add(points, log=run.log, unit=run.unit, age=run.age, fit=fit)
+            except hersey.HerseyError as error:
+                refused[run.log.name] = str(error)
+        for unit, age in _maintenance(folder):
+            campaign.add_event(unit, age, "re-greased")
+    (folder / "refused.json").write_text(json.dumps(refused, indent=1) + "\n")
     half.rename(file)
     return file
+
+
+def _maintenance(folder: Path) -> list[tuple[str, str]]:
+    """Return specimens and ages at which grease was renewed."""
+    file = folder / "maintenance.csv"
+    rows = file.read_text().splitlines()[1:] if file.exists() else []
+    return [(unit, age) for unit, age in (row.split(",") for row in rows)]
+
+
+def refused(folder: Path) -> dict[str, str]:
+    """Return the logs that hersey refused, with its reasons."""
+    found: dict[str, str] = json.loads((folder / "refused.json").read_text())
+    return found
 
 
 def ask(folder: Path) -> Row:
@@ -53,6 +75,7 @@ def ask(folder: Path) -> Row:
     return {
         "answer": _short(answer.to_dict()),
         "film": "computed" if film is not None else reason,
+        "refused": refused(folder),
         "seconds": seconds,
     }
 

@@ -1,8 +1,9 @@
 """Counts of a .jsonl of answers against the targets: intervals, B10 and B50, first failure modes.
 
 An interval holds the truth if it encloses it. Never, as the truth, is held if the interval has no upper end,
-if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit.
-Ages that have passed, never come or are more than three times the last run are counted apart.
+if it ends beyond the ages that were looked at, or if 5 % of the draws or more never reach the limit. Ages
+that have passed or never come are counted apart, and those of which truth and estimate are beyond three
+times the last run.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ from benchmarks.life_tests.modes import STARVATION, STICK_FULL, STICK_SLOW
 CLEAR, NEAR = 1.25, 1.1
 #: Share of draws from which hersey says never.
 SAID_NEVER = 0.05
-#: Ages beyond this many times the last run are far: hersey itself says that only the law speaks there.
+#: Beyond this many times the last run an age is far: hersey itself says that only the law speaks there.
 FAR = 3.0
+PLACES = ("held", "below", "above")
 MODES = {STICK_SLOW: "stick-slip", STICK_FULL: "stick-slip", STARVATION: "starvation"}
 
 
@@ -46,11 +48,13 @@ def place(asked: dict[str, Any], truth: float | None, horizon: float) -> str:
     return "held" if open_end or truth <= high else "above"
 
 
-def _when(real: float | None, last: float) -> str:
+def _when(asked: dict[str, Any], real: float | None, last: float) -> str:
     """Return what sets an age apart from those ahead, as a word."""
     if real is None:
         return " (never)"
-    return " (passed)" if real <= last else " (far)" if real > FAR * last else ""
+    said = asked["age"]["value"]
+    far = real > FAR * last and (said is None or said > FAR * last)
+    return " (passed)" if real <= last else " (far)" if far else ""
 
 
 def cases(row: dict[str, Any]) -> Iterator[Case]:
@@ -61,7 +65,7 @@ def cases(row: dict[str, Any]) -> Iterator[Case]:
     latest = max(unit["ages"][-1] for unit in truth["units"])
 
     def case(group: str, asked: dict[str, Any], real: float | None, last: float) -> Case:
-        apart = _when(real, last)
+        apart = _when(asked, real, last)
         if group[0] == "B" and apart == " (passed)":
             apart = ""
         return Case(group + apart, truth["mechanism"], place(asked, real, horizon))
@@ -103,36 +107,58 @@ def read(file: Path) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: row["seed"])
 
 
-def _line(name: str, places: Counter[str]) -> str:
-    count = sum(places.values())
-    share = {key: 100 * places[key] / count for key in ("held", "below", "above")}
-    return f"| {name} | {count} | {share['held']:.0f} % | {share['below']:.0f} % | {share['above']:.0f} % |"
+def _shares(places: Iterable[str]) -> str:
+    """Return count, and shares held, below and above, as cells."""
+    counted = Counter(places)
+    count = sum(counted.values())
+    return " | ".join([str(count), *(f"{100 * counted[key] / max(count, 1):.0f} %" for key in PLACES)])
 
 
-def _table(head: str, cases: Iterable[tuple[str, str]]) -> list[str]:
-    groups: dict[str, Counter[str]] = {}
-    for group, at in cases:
-        groups.setdefault(group, Counter())[at] += 1
+def _table(head: str, places: Iterable[tuple[str, str]]) -> list[str]:
+    groups: dict[str, list[str]] = {}
+    for group, at in places:
+        groups.setdefault(group, []).append(at)
     lines = [f"| {head} | ages | held | truth below | truth above |", "|---|---|---|---|---|"]
-    return lines + [_line(name, groups[name]) for name in sorted(groups)]
+    return lines + [f"| {name} | {_shares(groups[name])} |" for name in sorted(groups)]
 
 
-def report(rows: list[dict[str, Any]]) -> str:
-    """Return the tables of all rows as Markdown."""
-    good = [row for row in rows if "answer" in row]
-    found = [case for row in good for case in cases(row)]
-    alive = [case for case in found if "(" not in case.group]
-    lines = [f"{len(rows)} campaigns, {len(rows) - len(good)} without an answer.", ""]
-    lines += [f"- {row['seed']}: {row['error']}" for row in rows if "answer" not in row]
-    lines += ["", *_table("what", ((case.group, case.place) for case in found))]
-    for title, group in (("Ages ahead", False), ("B10 and B50", True)):
-        places = [(case.mechanism, case.place) for case in alive if case.group.startswith("B") is group]
-        lines += ["", f"{title} by mechanism:", "", *_table("mechanism", places)]
-    lines += ["", "| first failure mode | specimens | right |", "|---|---|---|"]
-    judged = [pair for row in good for pair in firsts(row)]
+def _firsts(rows: list[dict[str, Any]]) -> list[str]:
+    judged = [pair for row in rows for pair in firsts(row)]
+    lines = ["| first failure mode | specimens | right |", "|---|---|---|"]
     for kind in ("clear", "near"):
         right = [ok for word, ok in judged if word == kind]
         lines.append(f"| {kind} | {len(right)} | {100 * sum(right) / max(len(right), 1):.0f} % |")
+    return lines
+
+
+def _apart(found: list[Case]) -> list[str]:
+    """Return the tables of ages ahead, of ages that are counted apart, and of mechanisms."""
+    lines: list[str] = []
+    for title, apart in (("Ahead", ""), ("Passed", "(passed)"), ("Far", "(far)"), ("Never", "(never)")):
+        chosen = [case for case in found if apart in case.group and bool(apart) is ("(" in case.group)]
+        places = [(case.group.partition(" (")[0], case.place) for case in chosen]
+        lines += [f"{title}:", "", *_table("what", places), ""]
+    ahead = [case for case in found if "(" not in case.group]
+    for title, people in (("Ages ahead", False), ("B10 and B50", True)):
+        places = [(case.mechanism, case.place) for case in ahead if case.group.startswith("B") is people]
+        lines += [f"{title} by mechanism:", "", *_table("mechanism", places), ""]
+    return lines
+
+
+def report(rows: list[dict[str, Any]]) -> str:
+    """Return the tables of all rows as Markdown; campaigns that were re-greased are apart."""
+    good = [row for row in rows if "answer" in row]
+    lines = [f"{len(rows)} campaigns, {len(rows) - len(good)} without an answer.", ""]
+    lines += [f"- {row['seed']}: {row['error']}" for row in rows if "answer" not in row]
+    logs = sum(len(row.get("refused", {})) for row in good)
+    lines += [f"{logs} logs refused.", ""]
+    renewed = [row for row in good if row["truth"]["re-greased at"]]
+    others = [row for row in good if row not in renewed]
+    lines += _apart([case for row in others for case in cases(row)]) + _firsts(others)
+    lines += ["", f"Re-greased once at a known age, {len(renewed)} campaigns:", ""]
+    # New specimens are not known to be re-greased, so that B10 and B50 are of another population.
+    places = [(case.group, case.place) for row in renewed for case in cases(row) if case.group[0] != "B"]
+    lines += _table("what", places)
     seconds = [sum(row["seconds"].values()) for row in good]
     lines += ["", f"Processor time per campaign: {sum(seconds) / max(len(seconds), 1):.0f} s."]
     return "\n".join(lines)

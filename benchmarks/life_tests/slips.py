@@ -6,7 +6,9 @@
 from __future__ import annotations
 
 import json
+import math
 import os
+import re
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,8 +23,23 @@ from benchmarks.life_tests.drive import draw_drive
 
 Runs = dict[tuple[str, int], str]
 
+#: Kind of the warning that names each mistake.
+KINDS = {
+    "swapped logs": "logs exchanged",
+    "ages of a specimen too small": "ages scaled",
+    "age of a run too small": "age scaled",
+    "another machine": "another machine",
+    "another lubricant": "another lubricant",
+    "torque unit": "torque scaled",
+}
+#: Kinds of warnings that suspect a run of a mistake.
+SUSPECTS = {*KINDS.values(), "ages exchanged", "torques scaled", "same log"}
+#: Factor within which a factor is named.
+CLOSE = 2.0
 #: Least difference of two specimens, relative, by which an exchange of their logs can be seen.
 VISIBLE = 0.06
+#: Difference of two ages over the last one at which logs get exchanged: they are of one day at the stand.
+SAME_AGE = 0.15
 #: Torques that are taken for N m: by how much a number is too large.
 TORQUE_UNITS = {"lbf*in": 8.851, "kgf*cm": 10.197, "N*cm": 100.0, "ozf*in": 141.61, "mN*m": 1000.0}
 
@@ -55,6 +72,7 @@ def swapped(one: Campaign, runs: Runs, rng: Generator) -> tuple[Runs, Slip]:
         for a in units
         for b in units[a + 1 :]
         for column in range(2, min(len(one.ages[a]), len(one.ages[b])))
+        if abs(one.ages[a][column] - one.ages[b][column]) < SAME_AGE * one.ages[a][-1]
     ]
     likely = [pair for pair in sorted(pairs)[-max(3, len(pairs) // 5) :] if pair[0] > VISIBLE]
     if not likely:
@@ -164,9 +182,55 @@ def row(folder: Path) -> dict[str, Any]:
     import hersey
 
     told = json.loads((folder / "slip.json").read_text())
-    try:
-        with hersey.Campaign.open(product.campaign_file(folder), write=False) as campaign:
-            warnings = campaign.check().to_dict()
-    except hersey.HerseyError as error:  # a mistake may be refused as the runs are added
-        warnings = {"refused": str(error)}
-    return {**told, "said": warnings}
+    with hersey.Campaign.open(product.campaign_file(folder), write=False) as campaign:
+        said = campaign.check().to_dict()
+    return {**told, "said": said, "refused": product.refused(folder)}
+
+
+def warnings(found: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the warnings of a row that say that a run may be mistaken."""
+    every = [each for value in found["said"].values() if isinstance(value, list) for each in value]
+    return [each for each in every if isinstance(each, dict) and each.get("kind") in SUSPECTS]
+
+
+def found_run(found: dict[str, Any]) -> bool:
+    """Return whether a warning has the specimens of the mistake and, of single runs, their ages."""
+    slip = found["slip"]
+    wanted = [*slip["units"], *(f"{age}" for age in slip["ages"])]
+    return any(_words(each).issuperset(wanted) for each in warnings(found))
+
+
+def named(found: dict[str, Any]) -> bool:
+    """Return whether a warning has, beside the runs of the mistake, its kind and about its factor."""
+    slip = found["slip"]
+    factor = 1 / slip["factor"] if slip["kind"].startswith("age") else slip["factor"]
+    right = [
+        each
+        for each in warnings(found)
+        if each["kind"] == KINDS[slip["kind"]]
+        and (factor == 1 or abs(math.log(each["values"].get("factor", 1.0) / factor)) < math.log(CLOSE))
+    ]
+    return found_run({**found, "said": {"warnings": right}})
+
+
+def _words(warning: dict[str, Any]) -> set[str]:
+    """Return the words and numbers of the facts of a warning."""
+    text = re.sub(r"(?<=\d),(?=\d{3})", "", json.dumps(warning["values"]))
+    words = set(re.findall(r"[\w.]+", text))
+    return words | {word.removesuffix(".0") for word in words}
+
+
+def report(rows: list[dict[str, Any]]) -> str:
+    """Return how many mistakes are named, by kind, and how many clean campaigns are suspected."""
+    wrong, clean = [row for row in rows if row["slip"]], [row for row in rows if not row["slip"]]
+    lines = ["| mistake | campaigns | named rightly | run named | some warning |", "|---|---|---|---|---|"]
+    groups = {kind: [row for row in wrong if row["slip"]["kind"] == kind] for kind in KINDS} | {"all": wrong}
+    for name, those in groups.items():
+        counts = (
+            sum(map(named, those)),
+            sum(map(found_run, those)),
+            sum(bool(warnings(row)) for row in those),
+        )
+        lines.append(f"| {name} | {len(those)} | {' | '.join(map(str, counts))} |")
+    suspected = sum(bool(warnings(row)) for row in clean)
+    return "\n".join([*lines, "", f"Without a mistake: {len(clean)} campaigns, {suspected} suspected."])

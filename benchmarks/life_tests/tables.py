@@ -160,6 +160,9 @@ def write(campaign: Campaign, folder: Path) -> None:
     """Write the files of a campaign into a folder."""
     write_runs(tables(campaign), folder)
     (folder / "machine.toml").write_text(machine_file(campaign))
+    if campaign.regreased is not None:
+        renewed = [f"{unit},{campaign.regreased:.0f} pages" for unit in campaign.units]
+        (folder / "maintenance.csv").write_text("\n".join(["unit,age", *renewed]) + "\n")
     (folder / "truth.json").write_text(json.dumps(truth(campaign), indent=1) + "\n")
 
 

@@ -34,6 +34,16 @@ from .life.ageing_maps import AgeingMaps as AgeingMaps
 from .life.campaign import Campaign as Campaign
 from .life.drift.result import Drift as Drift
 from .life.drift.result import fit_drift as fit_drift
+from .life.failures.estimate import weibull as weibull
+from .life.failures.forecast import FleetForecast as FleetForecast
+from .life.failures.forecast import RemainingLife as RemainingLife
+from .life.failures.forecast import fleet_forecast as fleet_forecast
+from .life.failures.forecast import remaining_life as remaining_life
+from .life.failures.law import FailureLaw as FailureLaw
+from .life.failures.sample import Failures as Failures
+from .life.failures.table import read_failures as read_failures
+from .life.failures.test_plan import LifeTestPlan as LifeTestPlan
+from .life.failures.test_plan import life_test_plan as life_test_plan
 from .life.fatigue import RainflowCycles as RainflowCycles
 from .life.fatigue import SNCurve as SNCurve
 from .life.fatigue import damage_rate as damage_rate
@@ -56,7 +66,6 @@ from .life.other_uses import OtherUses as OtherUses
 from .life.other_uses import other_uses as other_uses
 from .life.population import BLife as BLife
 from .life.population import Population as Population
-from .life.population import weibull as weibull
 from .life.time_to_failure.estimate import TimeToFailure as TimeToFailure
 from .life.time_to_failure.estimate import time_to_failure as time_to_failure
 from .life.trend.fit import trend as trend

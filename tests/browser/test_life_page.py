@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser
 
+from hersey.life.growth.limit_ages import rounded
 from hersey.report.life_page import render_life
 from tests.browser.accessibility import open_all, violations_by_width
 from tests.browser.opening import Opened
 from tests.conftest import mostly_nightly
 from tests.life import shipped
 from tests.life.test_other_uses import by_hand
+from tests.life.test_time_to_failure import told
 
 
 @pytest.fixture(scope="module")
@@ -31,16 +36,18 @@ def test_it_draws_without_errors_and_without_network(opened: Opened) -> None:
 def test_it_says_what_ends_the_units(opened: Opened) -> None:
     verdict = opened.page.inner_text("#verdict")
     assert verdict.startswith("No specimen needs attention.")
-    assert "The first to fail is probably U1, at 241000 [" in verdict
-    assert "alf of new" not in verdict  # two specimens do not tell
-    assert "Do next: Measure U1 again at" in verdict
+    found = shipped.followed(2).time_to_failure
+    assert f"All two should reach at least {rounded(found.attention.look_again)} pages." in verdict
+    assert "alf of new" not in opened.page.inner_text("body")  # two specimens are no population
+    assert "B10" not in opened.page.inner_text("#ages")
     assert opened.page.inner_text("#command") == "hersey life <life.hersey>"
     titles = opened.page.locator(".part > h2").all_inner_texts()
-    assert titles[:2] == ["Specimens, most urgent first", "Time to failure"]
+    assert titles[:2] == ["Time to first failure, most urgent first", "Time to failure"]
     assert titles[-1] == "Reproduce this report"
-    for name in ("ends", "growth_1", "maps", "film", "drift", "population"):
+    for name in ("ends", "growth_1", "maps", "film", "drift"):
         assert opened.page.locator(f"#chart-{name} svg.marks").count() == 1
-    assert opened.page.locator("#ages tr:first-child td").all_inner_texts()[:2] == ["Running", "U1"]
+    assert opened.page.locator("#chart-population").count() == 0
+    assert opened.page.locator("#ages tr:first-child td").all_inner_texts()[:2] == ["U1", "Running"]
 
 
 @pytest.mark.parametrize("scheme", mostly_nightly(["light", "dark"], "light"))
@@ -61,27 +68,62 @@ def test_nothing_is_wider_than_the_page(opened: Opened) -> None:
 
 def test_it_can_be_asked_for_another_use(opened: Opened) -> None:
     page = opened.page
-    assert "by 100000 [80000, 130000] pages." in page.inner_text(".use-verdict")
-    assert page.inner_text("#uses .hint") == "as in the machine file"
+    assert page.locator(".use-verdict").is_hidden()
+    assert page.locator("#chart-uses").is_hidden()
+    assert page.inner_text(".uses .hint") == "as in the machine file"
     page.focus("#use-limit")
     page.keyboard.press("ArrowRight")
     page.focus("#use-cold")
     page.keyboard.press("ArrowLeft")
     told = page.inner_text(".use-verdict")
-    assert told.startswith("Half of new specimens fail by 104000 [83300, 135000] pages, instead of")
-    assert "100000" in told
+    assert told == "Half of new specimens fail by 104000 [83300, 135000] pages."
     assert 'motor_torque = "1.25 N*m"' in page.inner_text("#use-toml")
     assert 'coldest = "50 degC"' in page.inner_text("#use-toml")
     page.fill("#use-day", "500")
-    assert "208 days at 500 a day" in page.inner_text(".use-verdict")
+    assert "208 [167, 271] days at 500 pages a day" in page.inner_text(".use-verdict")
     page.fill("#use-day", "many")
-    assert page.inner_text("#uses [role=status]") == "Type a number above 0, e.g. 500"
+    assert page.inner_text(".uses [role=status]") == "Type a number above 0, e.g. 500"
     assert "U1 104000 [83300, 135000]" in (page.locator("#chart-uses svg").get_attribute("aria-label") or "")
     chosen = page.evaluate("location.hash")
     assert chosen == "#use?limit=1&cold=0&day=many"
-    page.click("#uses .foot >> text=Reset")
-    assert page.inner_text(".use-verdict").endswith("by 100000 [80000, 130000] pages.")
+    page.click(".uses .foot >> text=Reset")
+    assert page.locator(".use-verdict").is_hidden()
     page.evaluate("location.hash = '#use?limit=1&cold=0'")
     page.wait_for_function("document.querySelector('.use-verdict').textContent.includes('104000')")
     page.evaluate("location.hash = '#use?limit=9&cold=-1'")  # of another report: as the file states
-    page.wait_for_function("document.querySelector('#uses .hint').textContent.startsWith('as')")
+    page.wait_for_function("document.querySelector('.uses .hint').textContent.startsWith('as')")
+
+
+def test_the_numbers_that_matter_appear_once_and_all_agree(browser: Browser, tmp_path: Path) -> None:
+    """B50 and the age to look again, on the page as it opens; the table, charts and data hold the same."""
+    path = tmp_path / "life.html"
+    with shipped.few():
+        found = told()
+    answer = replace(shipped.followed(2), time_to_failure=found, uses=None)
+    path.write_text(render_life(answer, shipped.opened(2).runs(), "hersey life"), encoding="utf-8")
+    page = Opened(browser, path).page
+    half, again = found.b50, found.attention.look_again
+    assert half is not None
+    assert again is not None
+    text = page.inner_text("body")
+    for age in (half.age.value, again):
+        assert len(re.findall(rf"\b{rounded(age)}\b", text)) == 1
+    assert text.count("Half of new specimens") == 1
+    assert "B50" not in text
+    assert f"(90 %: {rounded(half.age.low)} to {rounded(half.age.high)})" in text.replace("\u00a0", " ")
+    cells = page.locator("#ages tbody tr").evaluate_all("rows => rows.map((row) => row.cells[3].innerText)")
+    names = page.locator("#ages tbody tr").evaluate_all("rows => rows.map((row) => row.cells[0].innerText)")
+    ends = {each.unit: each for each in found.units}
+    order = [name for state in ("failed", "unclear", "running") for name in getattr(found.attention, state)]
+    assert names == order
+    for name, cell in zip(names, cells, strict=True):
+        age = ends[name].age.age
+        assert cell in (rounded(age.value), f"before {rounded(age.high)}")
+    held = page.evaluate("JSON.parse(document.getElementById('document').textContent)")
+    tenth = found.to_dict()["b10"]["age"]
+    assert held["decision"]["b10"] == tenth
+    shown = page.inner_text(".population dd").replace("\u00a0", " ")
+    assert shown == f"{rounded(tenth['value'])} ({rounded(tenth['low'])} to {rounded(tenth['high'])})"
+    assert page.locator("#chart-population svg.marks").count() == 1
+    assert found.curve is not None
+    assert np.interp(half.age.value, found.curve.age, found.curve.median) == pytest.approx(0.5, abs=0.05)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import re
@@ -22,6 +23,7 @@ from hersey.charts import CHARTS, chart_of
 from hersey.charts.render import picture
 from hersey.damping.candidates.observations import Observations
 from hersey.errors import ParameterError
+from hersey.life.population import weibull as population
 from hersey.machine.machine import read_machine
 from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
@@ -140,6 +142,15 @@ def logs() -> hersey.LogComparison:
     return hersey.compare(data, data, names=("new", "worn"))
 
 
+@functools.cache
+def failures() -> hersey.FailureLaw:
+    """Two failure modes, of which each has a line."""
+    ages = np.array([4.0, 6.0, 7.0, 9.0, 10.0])
+    high = np.array([4.0, 6.0, np.inf, 9.0, 10.0])
+    modes = ("wear", "seizure", "", "seizure", "wear")
+    return hersey.weibull(hersey.Failures(ages, high, np.ones(5, dtype=int), "h", modes))
+
+
 #: How each result is made, quickly.
 MADE: dict[str, Callable[[], Any]] = {
     "TorqueLog": log,
@@ -166,7 +177,11 @@ MADE: dict[str, Callable[[], Any]] = {
     "OperatingMap": belt_map,
     "Plan": plan,
     "WarmUp": warm_up,
-    "Population": lambda: hersey.weibull([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
+    "FailureLaw": lambda: failures(),
+    "RemainingLife": lambda: hersey.remaining_life(failures(), 5.0),
+    "FleetForecast": lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0),
+    "LifeTestPlan": lambda: hersey.life_test_plan(3.0, shape=2.0, unit="h"),
+    "Population": lambda: population([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
     "FilmLife": lambda: shipped.film(1),
     "Growth": lambda: test_results.growth(),
@@ -235,9 +250,13 @@ def test_it_is_valid_and_drawn(name: str) -> None:
     assert svg.count("<path") > 10
 
 
+#: Titles of axes of pure numbers.
+WITHOUT_UNIT = {"exponent of damping in speed", "Failures", "Specimens to test"}
+
+
 @pytest.mark.parametrize("name", list(MADE))
 def test_axes_carry_units(name: str) -> None:
-    for title in titles(specification(name)) - {"exponent of damping in speed"}:
+    for title in titles(specification(name)) - WITHOUT_UNIT:
         assert "(" in title, title
 
 
@@ -460,9 +479,19 @@ def test_failures_stand_at_their_ranks_and_other_units_on_the_axis() -> None:
     assert all(row["low"] < row["age"] < row["high"] for row in band)
 
 
+def test_a_probability_plot_shows_modes_law_band_points_and_suspensions() -> None:
+    modes, band, line, points, ticks = layers("FailureLaw")
+    law = failures()
+    assert {row["mode"] for row in modes} == {"wear", "seizure"}
+    assert all(row["low"] <= row["age"] <= row["high"] for row in band)
+    assert [row["age"] for row in line] == [row["age"] for row in band]
+    assert [row["share"] for row in points] == pytest.approx(100 * law.positions[1])
+    assert [row["age"] for row in ticks] == [7.0]
+
+
 def test_a_population_without_a_law_still_shows_its_units() -> None:
     for failed in ([False, False], [True, False], [True, True]):
-        law = hersey.weibull([10.0, 10.0], failed)
+        law = population([10.0, 10.0], failed)
         shown = chart_of(law).to_dict(validate=False)
         alt.Chart.from_dict(valid(shown), validate=True)
         assert law.warnings[0].sentence in shown["title"]["subtitle"]

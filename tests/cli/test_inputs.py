@@ -67,6 +67,8 @@ def test_a_map_and_a_plan_never_replace_what_they_read(bench_csv: Path, tmp_path
         "coastdown none.csv --inertia 1 --figure kept.svg",
         "trend none.csv --out kept.csv",
         "trend none.csv --figure kept.svg",
+        "weibull none.csv --out kept.csv",
+        "weibull none.csv --figure kept.svg",
         "campaign export none.hersey --out kept.csv",
         "export fmu none.json none.toml --out kept.fmu",
         "life none.hersey --machine none.toml --out kept.html",

@@ -43,6 +43,7 @@ ARGUMENTS: dict[str, list[str]] = {
     "trend": [BENCH, "--at", "60 rpm"],
     "campaign": ["check", "CAMPAIGN"],
     "life": ["LIFE", "--machine", MACHINE],
+    "weibull": [str(EXAMPLES / "failures.csv"), "--age", "200 h"],
     "cycles": [TRACE, "--drive-speed", "20 mm/s", "--identify", "--closures", "retained"],
     "film": [MACHINE, "--log", BENCH, *TARE],
     "simulate": ["--check"],

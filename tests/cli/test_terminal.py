@@ -51,6 +51,10 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     coasts = (ROOT / "examples" / "coast-down.csv").read_text()
     coasts = coasts.replace("time [s],speed [", f"Time {IN_CELL} [s],Speed {IN_CELL} [")
     (folder / f"{IN_FILE}-coast.csv").write_text(coasts, encoding="utf-8", newline="")
+    failures = f"age [h],status,mode,{IN_CELL}\n" + "".join(
+        f"{age},failed,{IN_CELL}{age % 2},1\n" for age in range(10, 20)
+    )
+    (folder / f"{IN_FILE}-failures.csv").write_text(failures, encoding="utf-8", newline="")
     for name, home in (("machine", ROOT / "tests" / "stand"), ("scenario", ROOT / "examples")):
         text = (home / f"{name}.toml").read_text()
         (folder / f"{IN_FILE}-{name}.toml").write_text(text, encoding="utf-8")
@@ -101,6 +105,13 @@ TYPED: dict[str, list[list[str]]] = {
         ["list", LOG],
     ],
     "life": [[f"{IN_FILE}-units.hersey", "--machine", BROKEN], [LOG, "--machine", MACHINE]],
+    "weibull": [
+        [f"{IN_FILE}-failures.csv"],
+        [f"{IN_FILE}-failures.csv", "--json"],
+        [LOG],
+        [f"{IN_FILE}-failures.csv", "--arrhenius", HOSTILE, "--use", "40 degC"],
+        [f"{IN_FILE}-failures.csv", "--age", HOSTILE],
+    ],
     "design": [[LOG], [LOG, "--speed", HOSTILE]],
     "cycles": [
         [TRACE, "--value", f"force {IN_CELL}", "--drive-speed", "20 mm/s"],

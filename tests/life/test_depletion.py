@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import inspect
+import re
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import polars as pl
 import pytest
+from scipy.special import logit
 
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film import layer as layer_module
 from hersey.life.film import starving
+from hersey.life.film.common_to_runs import Common
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
-from hersey.life.film.layer import Layers, layers
+from hersey.life.film.layer import LayerFit, Layers, layers
 from hersey.life.film.of_runs import starvation_indicator
+from hersey.life.film.shares import StarvesAt, _some_runs, by_share, slower_by_share
 from hersey.life.film.starved_drag import (
+    CONSTANT,
     FREE,
     LAYER,
+    ROLLING,
+    ROLLING_BY_SHARE,
     VISCOSITY,
     SharedLoad,
     StarvedDrag,
@@ -30,7 +37,7 @@ from hersey.life.film.starved_drag import (
 )
 from hersey.life.film.through_life import STARVED, film_life
 from hersey.life.indicator import Indicators, Runs
-from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_film_share, log_layer
+from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_fading_share, log_film_share, log_layer
 from hersey.lubrication.film import film_thickness
 from hersey.testbench import population
 from hersey.testbench.ageing import Ageing
@@ -75,8 +82,10 @@ def test_the_law_is_that_of_the_film_with_this_supply() -> None:
     contact, lubricant = film_of(shipped.machine())
     speed, kelvin = (each[None] for each in grid())
     reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
-    drag = StarvedDrag(speed, 0.0 * kelvin, flooded(contact, lubricant, speed, kelvin), reference, None, None)
+    film = flooded(contact, lubricant, speed, kelvin)
+    drag = StarvedDrag(speed, 0.0 * kelvin, film, reference, 0.0, None, None)
     free = np.zeros((1, FREE))
+    free[0, ROLLING_BY_SHARE] = 3.0
     supply = 6e-6
     free[0, LAYER] = np.log(supply) - cubic(reference.film, np.zeros(()))[0].item()
     expected = film_thickness(contact, lubricant, speed=speed, temperature=kelvin, supply=supply).torque
@@ -95,8 +104,10 @@ def test_slopes_are_those_of_the_torque() -> None:
     speed, kelvin = (each[None] for each in grid())
     reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
     film = flooded(contact, lubricant, speed, kelvin)
-    drag = StarvedDrag(speed, kelvin - 390.0, film, reference, contact.roughness, SharedLoad.of(mixed, 390.0))
-    free = np.array([[0.3, 0.01, 1e-3, 1e-5, 0.2, 0.1, 0.1, 0.1, 0.2, -0.5]])
+    thick = np.log(5e-6)
+    faces = SharedLoad.of(mixed, 390.0)
+    drag = StarvedDrag(speed, kelvin - 390.0, film, reference, thick, contact.roughness, faces)
+    free = np.array([[0.3, 0.01, 1e-3, 1e-5, 0.2, 0.1, 0.1, 0.1, 0.2, -0.3, 2.2, 0.04, 0.4, -0.5]])
     slopes = drag.torque(free)[1]
     for k in range(FREE):
         step = 1e-6 * np.eye(FREE)[k]
@@ -137,9 +148,9 @@ def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
     )
     right = layers(dwells, shipped.machine(), speed=COLD[0], kelvin=COLD[1])
     wrong = layers(dwells, off, speed=COLD[0], kelvin=COLD[1])
-    assert wrong.interval()[0] == pytest.approx(right.interval()[0], abs=0.02)
+    assert wrong.interval()[0] == pytest.approx(right.interval()[0], abs=0.04)
     level = [np.interp(each.best[0], each.place[0], each.viscosity[0]) for each in (wrong, right)]
-    assert level[0] - level[1] == pytest.approx(-np.log(1.2), abs=0.03)
+    assert level[0] - level[1] == pytest.approx(-np.log(1.2), abs=0.06)
 
 
 def test_the_layer_follows_its_law() -> None:
@@ -168,6 +179,17 @@ def test_the_share_of_the_film_is_that_of_the_core(sharpness: float) -> None:
     assert slope == pytest.approx((up - down) / 2e-5, abs=1e-9)
 
 
+@pytest.mark.parametrize("sharpness", [2.0, 3.0, 5.0])
+def test_both_laws_of_starvation_agree_where_the_layer_is_the_film(sharpness: float) -> None:
+    place = np.linspace(-3.0, 3.0, 13)
+    share, slope = log_fading_share(place, sharpness)
+    above, below = (log_fading_share(place + step, sharpness)[0] for step in (1e-6, -1e-6))
+    assert slope == pytest.approx((above - below) / 2e-6, abs=1e-8)
+    assert share[6] == pytest.approx(log_film_share(place, sharpness)[0][6])
+    assert share[0] == pytest.approx(place[0], abs=0.05)
+    assert share[-1] == pytest.approx(0.0, abs=1e-6)
+
+
 def test_the_usual_sharpness_is_that_of_the_film() -> None:
     usual = inspect.signature(film_thickness).parameters["starvation_sharpness"].default
     assert usual == USUAL_SHARPNESS
@@ -179,8 +201,9 @@ def test_the_shipped_units_starve_when_they_do() -> None:
     for told, unit in zip(film.starves[0].units, shipped.truth(), strict=True):
         age = unit["ends"]["starvation"]
         misses += not told.age.low <= age <= told.age.high
-        assert told.age.value == pytest.approx(age, rel=0.08)
-        assert told.age.high < 1.6 * told.age.low
+        # The drag that does not follow the film is 5 % of it, and may be 40 %.
+        assert told.age.value == pytest.approx(age, rel=0.2)
+        assert told.age.high < 2.0 * told.age.low
     assert misses <= 1
     supply = [run["supply"] for unit in shipped.truth() for run in unit["runs"]]
     held = (film.layer.low <= supply) & (supply <= film.layer.high)
@@ -195,14 +218,76 @@ def test_the_shipped_units_starve_when_they_do() -> None:
 def test_what_a_result_says() -> None:
     film = shipped.film()
     text = film.summary()
-    assert "U4 at 170000 pages: 0.7" in text
+    assert re.search(r"U4 at 170000 pages: 0\.[567]", text)
     assert "the cold corner (127.3 rpm, 60 degC)" in text
     assert f"starved below {STARVED:.2f}" in text
     oil = film.oil[3]
     assert oil.new.value > oil.last.value
     assert oil.last.value == pytest.approx(oil.needed.value, rel=0.3)  # it starves at about that age
     volume = 20e-6 * film.track * 0.22
-    assert oil.new.low < volume < oil.new.high
+    assert oil.new.low < volume < oil.new.high * film.systematic
+
+
+def test_more_drag_beside_the_film_means_that_specimens_starve_sooner() -> None:
+    """Of the shipped specimens 5 % does not follow the film; the dwells cannot exclude more."""
+    film = shipped.film()
+    drag = film.other_drag
+    assert drag.computed == pytest.approx(0.0466, abs=1e-3)
+    assert drag.low < 0.05 < drag.high <= 0.45
+    assert [each.share for each in drag.starves] == [0.05, 0.2, 0.3, 0.4]
+    ages = [each.median for each in drag.starves]
+    assert ages == sorted(ages, reverse=True)
+    assert drag.sooner
+    told = film.warnings[-1]
+    assert told.kind == "other drag"
+    assert told.values["direction"] == "sooner"
+    assert (told.values["least"], told.values["most"]) == (0.05, 0.4)
+    assert "With more such drag specimens starve sooner" in told.sentence
+    assert "log one specimen flooded with fresh lubricant" in told.sentence
+    assert told in film.with_starvation(Indicators(film.runs, ())).each[0].warnings
+    assert f"{drag.starves[0].shown} at 5%" in film.summary()
+    assert film.to_dict()["other_drag"]["starves"][3]["median"] == ages[3]
+
+
+def test_the_share_is_learned_where_the_dwells_show_it() -> None:
+    """Dwells of a drive 40 % of whose drag goes with seals, which no film takes away."""
+    machine, _ = example_drive()
+    speed, kelvin = (np.tile(each, (6, 1)) for each in grid())
+    given = np.ones(speed.shape, dtype=bool)
+    bare = FilledDwells(speed, kelvin, np.ones(speed.shape), np.full(speed.shape, 1e-3), given)
+    fit = LayerFit.of(bare, machine, speed=COLD[0], kelvin=COLD[1], other=(COLD[0], 453.15))
+    (search,) = fit._searches(1, Common.beforehand(0.1, 0.0))
+    free = search.start(0.0)
+    free[:, LAYER] = np.linspace(-2.0, 1.0, 6)
+    free[:, ROLLING] = logit(0.4) - logit(fit.computed_share)
+    free[:, ROLLING_BY_SHARE] = 0.5
+    free[:, CONSTANT] = 0.1
+    torque = search.drag.torque(free)[0]
+    dwells = replace(bare, torque=torque, error=0.01 * torque)
+    found = by_share(replace(fit, dwells=dwells), [f"U{k}" for k in range(6)])
+    assert int(np.argmax(found.weight)) == 3
+    assert found.weight[0] < 0.02
+    assert found.likeliest.best[:5] == pytest.approx(free[:5, LAYER], abs=0.05)
+
+
+def test_of_many_specimens_some_are_followed_at_each_share() -> None:
+    """The ages of all are those of the likeliest share, times what other shares make of the few."""
+    units = [f"U{k}" for k in range(100) for _ in range(6)]
+    some = _some_runs(units)
+    assert some.size == 34 * 6
+    assert some.tolist()[:7] == [0, 1, 2, 3, 4, 5, 18]
+    starves = [StarvesAt(0.05, 1.0, 4.0), StarvesAt(0.2, 1.0, 2.0), StarvesAt(0.3, 1.0, np.inf)]
+    slower = slower_by_share(starves, np.array([0.3, 0.6, 0.1]), 1000, 0)
+    assert sorted(set(slower)) == [1.0, 2.0]
+    assert np.mean(slower == 2.0) == pytest.approx(0.3, abs=0.05)
+
+
+def test_faces_that_may_touch_hide_that_a_film_starves() -> None:
+    machine = shipped.machine()
+    assert machine.contact is not None
+    rough = replace(machine, asperities=None, boundary=None, contact=replace(machine.contact, roughness=1e-6))
+    with pytest.raises(InsufficientDataError, match=r"3\.9 times the roughness.*Add \[asperities\]"):
+        film_life(shipped.campaign(1), rough)
 
 
 def test_starvation_is_an_indicator() -> None:
@@ -287,10 +372,10 @@ def test_how_well_the_viscosity_is_known_beforehand(
     class ToldError(Exception):
         pass
 
-    def told(_searches: object, _about: FloatArray, beforehand: Any) -> None:
+    def told(_searches: object, beforehand: Any) -> None:
         raise ToldError(beforehand.covariance)
 
-    monkeypatch.setattr(layer_module, "_shared_by_runs", told)
+    monkeypatch.setattr(layer_module, "fitted_together", told)
     bare, _ = example_drive()
     assert bare.lubricant is not None
     machine = replace(bare, lubricant=replace(bare.lubricant, uncertainty=stated))

@@ -99,7 +99,7 @@ def test_ages_of_few_draws_are_held_at_a_time(monkeypatch: pytest.MonkeyPatch) -
         return fitted(logs, *more)
 
     monkeypatch.setattr(population, "_fitted", counted)
-    hersey.weibull(np.random.default_rng(5).weibull(2.0, 2000), [True] * 2000)
+    population.weibull(np.random.default_rng(5).weibull(2.0, 2000), [True] * 2000)
     own, *drawn = held
     assert own == (1, 2000)
     assert sum(rows for rows, _ in drawn) == population._DRAWS

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -67,6 +69,31 @@ def test_what_is_not_known_is_said() -> None:
     assert found.time_to_failure.of_new() == ""  # one specimen is no population
     with pytest.raises(InsufficientDataError, match="no failure mode can be judged"):
         follow(shipped.opened(1), hersey.Machine(11e3, 11.0, 15e-3, 3e-3))
+
+
+@pytest.mark.parametrize("radius", ["", "[contact]"])
+def test_without_a_drivetrain_it_does_what_it_can(radius: str, tmp_path: Path) -> None:
+    """Torque limits need nothing else; a radius in [contact] leads to the operating points, too."""
+    file = tmp_path / "machine.toml"
+    text = '[limits]\nmotor_torque = "1 N*m"\n[[points]]\nspeed = "200 mm/s"\ntemperature = "180 degC"\n'
+    if radius:
+        text += '[contact]\nroll_radius = "15 mm"\nrubber_thickness = "3.5 mm"\nmodulus = "0.65 MPa"\n'
+        text += 'poisson_ratio = 0.48\nlength = "220 mm"\nload = "300 N"\n'
+    file.write_text(text)
+    with pytest.raises(ParameterError, match=r"table \[drivetrain\] is missing"):
+        hersey.read_machine(file)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        machine = hersey.read_machine(file, drivetrain=False)
+    assert not machine.has_drivetrain
+    with shipped.few():
+        found = follow(shipped.opened(1), machine)
+    kinds = {mode.kind for mode in found.time_to_failure.modes}
+    assert kinds == {"motor torque", "stick-slip"} if radius else {"motor torque"}
+    lacking = {each.where for each in found.time_to_failure.warnings if "drivetrain" in each.text}
+    assert lacking == {"stick-slip from rest" if radius else "stick-slip at a used operating point"}
+    assert "the machine file has no [drivetrain]" in found.summary()
+    assert found.maps is None
 
 
 def test_the_page_holds_the_answer() -> None:

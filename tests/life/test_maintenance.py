@@ -6,10 +6,13 @@ import json
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import polars as pl
 import pytest
 
+import hersey
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
@@ -18,6 +21,7 @@ from hersey.life.indicator import Indicator, Indicators, Runs
 from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event
 from hersey.life.time_to_failure.estimate import time_to_failure
 from tests.cli.command import run
+from tests.life import shipped
 from tests.life.shipped import fewer
 
 AGES = np.linspace(0.0, 600.0, 7)
@@ -183,3 +187,38 @@ def test_a_file_without_events_is_read_and_brought_up_to_date(campaign: Path) ->
         assert opened.events() == []
     with Campaign.open(campaign / "life.hersey") as opened:
         assert opened.add_event("U1", "1000 pages", "cleaned", run=2).run == 2
+
+
+def test_a_renewed_layer_thins_from_its_own_age(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From 105000 pages on the logs of U1 are those of a new specimen: it lives its life again from there."""
+    fewer(monkeypatch)
+    whole = shipped.campaign(4)
+    runs, dwells = whole.runs(), whole.dwells()
+    again = {
+        4: 1,
+        5: 2,
+        6: 3,
+    }  # runs at 105000, 140000 and 175000 have the dwells of those at 0, 35000, 70000
+    runs = runs.with_columns(age=pl.when(pl.col("run") == 6).then(175000.0).otherwise(pl.col("age")))
+    parts = [dwells.filter(~pl.col("run_id").is_in(list(again)))]
+    for run_id, source in again.items():
+        parts.append(dwells.filter(pl.col("run_id") == source).with_columns(run_id=pl.lit(run_id, pl.Int64)))
+    answers = {
+        "path": whole.path,
+        "age_unit": "pages",
+        "runs": lambda: runs,
+        "dwells": lambda: pl.concat(parts),
+    }
+    event = Event("U1", Age(105000.0, "pages"), "re-greased", 4)
+    renewed: Any = shipped.Campaign(**answers)
+    renewed.events = lambda: [event]
+    found = hersey.film_life(renewed, shipped.machine())
+    usual = hersey.film_life(whole, shipped.machine())
+    ages, before = ({each.unit: each.age for each in film.starves[0].units} for film in (found, usual))
+    assert list(ages) == ["U1", "U2", "U3", "U4"]
+    assert ages["U1"].value == pytest.approx(105000.0 + before["U1"].value, rel=0.1)
+    assert ages["U2"].value == pytest.approx(before["U2"].value, rel=0.05)
+    young = found.ages < 105000.0
+    assert np.isnan(found.curves[0].value[0, young]).all()
+    assert np.isfinite(found.curves[0].value[0, ~young]).all()
+    assert np.isfinite(found.curves[0].value[1:]).all()

@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-import hersey
 from hersey.errors import HerseyError, InsufficientDataError, ParameterError
 from hersey.life.population import Population, weibull
 
@@ -150,6 +149,6 @@ def test_what_is_refused(call: object, words: str) -> None:
 
 
 def test_a_table_of_what_is_told() -> None:
-    table = hersey.weibull(*HANDBOOK, unit="h").to_frame()
+    table = weibull(*HANDBOOK, unit="h").to_frame()
     assert table.filter(table["name"] == "B10")["unit"].item() == "h"
     assert table.filter(table["name"] == "failed")["value"].item() == 10

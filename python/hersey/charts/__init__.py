@@ -30,6 +30,8 @@ operating_map    the operating map
 plan             a drive profile and the motion
 warm_up          speed, drag and temperatures of a warm-up
 weibull          share failed against age
+life_failures    specimens of a life test as intervals, on the axes of a Weibull plot
+failures         share failed against age, of failures typed in; remaining life, fleet, test plan
 ageing_maps      the operating map of a unit when new, now and at its end
 life             the charts of a life test, in the order of its page
 trend            friction against age at one speed
@@ -80,6 +82,10 @@ CHARTS = {
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
     "Population": ("weibull", "weibull_chart"),
+    "FailureLaw": ("failures", "law_chart"),
+    "RemainingLife": ("failures", "remaining_chart"),
+    "FleetForecast": ("failures", "fleet_chart"),
+    "LifeTestPlan": ("failures", "plan_chart"),
     "OtherUses": ("other_uses", "other_uses_chart"),
     "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),
     "LifeTest": ("life", "life_chart"),

@@ -62,12 +62,12 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
     rows = [
         row
         for k, name in enumerate(names)
-        for row in rows_of(
+        for row in _known(
             age=film.ages[ages],
             value=curve.value[k, ages],
             low=curve.low[k, ages],
             high=curve.high[k, ages],
-            unit=[name] * int(ages.sum()),
+            unit=np.full(int(ages.sum()), name),
         )
     ]
     x = _age(film, ages, ticks=8)
@@ -93,6 +93,12 @@ def _over_flooded(film: FilmLife, ages: BoolArray, names: list[str]) -> Chart:
     return alt.layer(*layers, title=title, width=WIDTH, height=_HEIGHT)
 
 
+def _known(**columns: np.ndarray) -> list[Row]:
+    """Rows of a curve from the age on at which its layer was renewed."""
+    known = np.isfinite(columns["value"])
+    return rows_of(**{name: column[known] for name, column in columns.items()})
+
+
 def _runs(film: FilmLife, read: Estimates, *, most: float, unit: str = "", factor: float = 1.0) -> list[Row]:
     """Rows of the runs with an estimate, of one unit or of all; unknown ends at ``most``."""
     names = enumerate(film.runs.unit)
@@ -107,7 +113,7 @@ def _runs(film: FilmLife, read: Estimates, *, most: float, unit: str = "", facto
 
 
 def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]) -> Chart:
-    most = _ROOM * float(np.max(film.layers.value[chosen][:, ages])) / _MICRO
+    most = _ROOM * float(np.nanmax(film.layers.value[chosen][:, ages])) / _MICRO
     each = [_layer(film, ages, names[k], k, most, first=i % _ACROSS == 0) for i, k in enumerate(chosen)]
     lines = [alt.hconcat(*each[i : i + _ACROSS], spacing=14) for i in range(0, len(each), _ACROSS)]
     more = f"; the {len(chosen)} specimens that starve first" if len(chosen) < len(names) else ""
@@ -120,7 +126,7 @@ def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]
 
 
 def _layer(film: FilmLife, ages: BoolArray, name: str, k: int, most: float, *, first: bool) -> Chart:
-    rows = rows_of(
+    rows = _known(
         age=film.ages[ages],
         value=film.layers.value[k, ages] / _MICRO,
         low=np.minimum(film.layers.low[k, ages] / _MICRO, most),

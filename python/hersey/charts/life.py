@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hersey.charts import chart_of
-from hersey.charts.failures import failures_chart
+from hersey.charts.life_failures import failures_chart
 from hersey.charts.render import write_pictures
 from hersey.charts.style import Chart, unchecked
 

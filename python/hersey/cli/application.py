@@ -64,6 +64,7 @@ PANELS = {
         "compare": "Compare the damping of two logs: of two lubricants, ages or specimens.",
         "campaign": "Keep the runs of a life test, many specimens at many ages, in one file.",
         "life": "Predict which specimens of a life test fail first, how, and when.",
+        "weibull": "Fit the law of ages at failure: B-lives with bounds, remaining life, fleet, next test.",
     },
     "Other tools": {
         "export": "Export the drive for Simulink, Amesim, Modelica and other tools.",

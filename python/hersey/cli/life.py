@@ -50,7 +50,7 @@ def life(
     from hersey.life.indicator import NOT_JUDGED
     from hersey.machine.machine import read_machine
 
-    machine = read_machine(machine_file)
+    machine = read_machine(machine_file, drivetrain=False)
     with Campaign.open(file, write=False) as campaign:
         with steps() as step:
             answer = follow(

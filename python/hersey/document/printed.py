@@ -16,6 +16,7 @@ from hersey.document.parts.motion import StickSlipPart, SweepPart
 from hersey.document.parts.posterior import PosteriorPart
 from hersey.document.parts.stability import BandPart
 from hersey.inspection.inspecting import Inspection
+from hersey.life.failures.answers import FailureAnswers
 from hersey.life.trend.result import FrictionTrend
 from hersey.stability.operating_map.result import OperatingMap
 from hersey.stability.plan.result import Plan
@@ -35,6 +36,7 @@ PRINTED: dict[str, type] = {
     "trend": FrictionTrend,
     "campaign": CampaignPart,
     "life": LifeTestPart,
+    "weibull": FailureAnswers,
     "cycles": CyclesPart,
     "film": FilmPart,
     "simulate": StickSlipPart,

@@ -193,6 +193,11 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         If its runs do not show torque against temperature.
     """
     end = _chosen(found, unit)
+    if not machine.has_drivetrain:
+        raise InsufficientDataError(
+            "the machine file has no [drivetrain]",
+            remedy="add it, with stiffness, mass, roll_radius and stick_speed",
+        )
     runs = read_runs_of(campaign, machine.rest)
     own = [
         (runs.runs.age[i], dwells, rest) for i, dwells, rest in runs.usable() if runs.runs.unit[i] == end.unit

@@ -29,6 +29,10 @@ _MOST_LOST = 100.0
 _LEAST_LOST = 1e-300
 #: Least r^g, as a logarithm: keeps its inverse finite.
 _THINNEST = -60.0
+#: Greatest r^k, as a logarithm: its exponential is nothing.
+_THICKEST = 6.0
+#: Power of the law that fades over the sharpness of the other: both agree where the layer is the film.
+_FADES = float(np.log1p(-np.exp(-1.0)) / -np.log(2.0))
 
 
 def log_layer(new: FloatArray, side_flow: FloatArray, evaporation: FloatArray, age: FloatArray) -> FloatArray:
@@ -59,3 +63,14 @@ def log_film_share(log_layer: FloatArray, sharpness: float | FloatArray) -> tupl
     """Return ln of the film over the flooded film, and its slope, from ln of the layer over that film."""
     odds = np.exp(-np.maximum(sharpness * log_layer, _THINNEST))
     return np.asarray(-np.log1p(odds) / sharpness), np.asarray(odds / (1.0 + odds))
+
+
+def log_fading_share(log_layer: FloatArray, sharpness: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the same by a law that comes to the flooded film sooner, 1 less an exponential.
+
+    (1 - exp(-r^k))^(1/k), with k so that both laws agree at r = 1.
+    """
+    power = _FADES * sharpness
+    left = np.exp(np.clip(power * log_layer, _THINNEST, _THICKEST))
+    fallen = -np.expm1(-left)
+    return np.asarray(np.log(fallen) / power), np.asarray(left * (1.0 - fallen) / fallen)

@@ -71,14 +71,15 @@ def doubts(
     Parameters
     ----------
     stiffness, mass, stick_speed
-        N/m, kg and m/s, at the belt.
+        N/m, kg and m/s, at the belt; infinite if not stated.
     points
         Operating points.
     modulus
         Young's modulus of the rubber, Pa, if it is stated.
     """
-    frequency = math.sqrt(stiffness / mass) / (2 * math.pi)
-    if not _SLOWEST <= frequency <= _FASTEST:
+    stated = math.isfinite(stiffness) and math.isfinite(mass)
+    frequency = math.sqrt(stiffness / mass) / (2 * math.pi) if stated else math.nan
+    if stated and not _SLOWEST <= frequency <= _FASTEST:
         words = (
             "stiffness {stiffness:.4g} N/m and mass {mass:.4g} kg give a natural frequency of "
             "{frequency:.2g} Hz; usual are {slowest:g} to {fastest:g} Hz"
@@ -102,7 +103,7 @@ def doubts(
             per_mm=stiffness / 1e3,
         )
     slowest = min((point.speed for point in points), default=math.inf)
-    if stick_speed >= slowest:
+    if slowest <= stick_speed < math.inf:
         yield Warning(
             "stick speed above the operating points",
             "stick_speed {stick_speed:.4g mm/s} is not below the slowest operating point, {slowest:.4g mm/s}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass as plain_dataclass
@@ -196,6 +197,11 @@ class Machine:
         return self.limits.gripping(Drivetrain(self.stiffness, self.mass, part=self.part))
 
     @property
+    def has_drivetrain(self) -> bool:
+        """Whether stiffness, mass and stick speed are known."""
+        return math.isfinite(self.stiffness)
+
+    @property
     def belt(self) -> dict[str, Any]:
         """What a fitted surface needs to be the drag of a belt, as `DampingSurface.drag` takes it."""
         names = ("roll_radius", "stick_speed", "stick_speed_temperature", "stick_speed_rule", "rest")
@@ -239,8 +245,8 @@ def _named(rows: object) -> object:
 
 
 @dataclass(frozen=True)
-class _MachineFile(Table):
-    drivetrain: DrivetrainTable
+class _WithoutDrivetrain(Table):
+    drivetrain: DrivetrainTable | None = None
     limits: Limits = field(default_factory=Limits)
     contact: ContactTable | None = None
     lubricant: LubricantTable | None = None
@@ -253,6 +259,11 @@ class _MachineFile(Table):
     heat: HeatTable | None = None
     life: LifeTable = field(default_factory=LifeTable)
     gear: GearTable | None = None
+
+
+@dataclass(frozen=True)
+class _MachineFile(_WithoutDrivetrain):
+    drivetrain: DrivetrainTable = field()
 
 
 def _refuse_another(path: Path, document: Mapping[str, Any]) -> None:
@@ -270,12 +281,22 @@ def _refuse_another(path: Path, document: Mapping[str, Any]) -> None:
             )
 
 
-def _uncertainty(path: Path, document: Mapping[str, Any], tables: _MachineFile) -> dict[str, Uncertainty]:
+def _moving(tables: _WithoutDrivetrain) -> dict[str, Any]:
+    """What [drivetrain] states; infinite without it, but for a radius that [contact] states."""
+    if tables.drivetrain is not None:
+        return vars(tables.drivetrain)
+    radius = None if tables.contact is None else tables.contact.roll_radius
+    known = {"roll_radius": math.inf if radius is None else radius}
+    return dict.fromkeys(("stiffness", "mass", "stick_speed"), math.inf) | known
+
+
+def _uncertainty(
+    path: Path, document: Mapping[str, Any], tables: _WithoutDrivetrain, radius: float
+) -> dict[str, Uncertainty]:
     """How far parameters are known, by their names; a range contains the value of [drivetrain]."""
     found = {}
     for parameter, text in tables.uncertainty.items():
         with at_line(path, f"uncertainty.{parameter}", "uncertainty", parameter):
-            radius = tables.drivetrain.roll_radius
             found[parameter] = read_uncertainty(parameter, text, roll_radius=radius)
             if (value := getattr(tables.drivetrain, parameter, None)) is not None:
                 line = line_of(read_text(path), ("drivetrain", parameter))
@@ -286,7 +307,7 @@ def _uncertainty(path: Path, document: Mapping[str, Any], tables: _MachineFile) 
 
 
 @takes_si()
-def read_machine(path: str | Path) -> Machine:
+def read_machine(path: str | Path, *, drivetrain: bool = True) -> Machine:
     """Read ``[drivetrain]``, and the other tables if they are there.
 
     These are ``[limits]``, ``[contact]``, ``[lubricant]``, ``[[points]]``, ``[uncertainty]``, and
@@ -294,6 +315,8 @@ def read_machine(path: str | Path) -> Machine:
     ``[rest]``, numbers or a log beside the file, and ``[heat]``. ``[asperities]`` and ``[boundary]`` say what
     shares the load with the film; they need each other, ``[contact]`` with a roughness, and ``[lubricant]``.
     ``[life]`` and ``[gear]`` say how it is used, and what a life test asks of it.
+
+    ``drivetrain`` says whether the file must have that table: a life test does without it what it can.
 
     Every value is a string such as ``"11 N/mm"``; an uncertainty is ``"10 %"`` or ``"0.3 mm/s to 3 mm/s"``
     (see `Uncertainty`).
@@ -308,9 +331,11 @@ def read_machine(path: str | Path) -> Machine:
     document = read_toml(path, _MachineFile)
     if "drivetrain" not in document:
         _refuse_another(path, document)
-    tables = read_tables(path, _MachineFile)
+    tables = read_tables(path, _MachineFile if drivetrain else _WithoutDrivetrain)
+    moving = _moving(tables)
+    radius = moving["roll_radius"]
     parts: dict[str, Any] = {
-        "contact": lambda of: of.contact(tables.drivetrain.roll_radius, tables.limits.nip_load),
+        "contact": lambda of: of.contact(radius, tables.limits.nip_load),
         "lubricant": lambda of: of.lubricant(),
         "rest": lambda of: of.rest(path),
         "boundary": lambda of: of.boundary(),
@@ -324,11 +349,11 @@ def read_machine(path: str | Path) -> Machine:
     with naming(f"{path.name}: points"):
         refuse_other_than_all(tables.points)
     machine = Machine(
-        **vars(tables.drivetrain),
+        **moving,
         **parts,
         limits=tables.limits,
-        points=tables.points,
-        uncertainty=_uncertainty(path, document, tables),
+        points=() if math.isinf(radius) else tables.points,
+        uncertainty=_uncertainty(path, document, tables, radius),
         sensors=sensors_of(**vars(tables.sensors)),
         static_friction=None if tables.boundary is None else tables.boundary.static_friction,
         life=tables.life,

@@ -33,7 +33,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
         "signal": SIGNALS[worst],
         "lead": found.lead(),
         "more": [found.of_new()] if found.of_new() else [],
-        "next": [sentence(each) for each in found.advice],
+        "next": [sentence(each) for each in (*found.advice, found.planning()) if each],
         "heads": ["Specimen", "State", "Failure mode", f"Expected{of_unit}", f"90 % interval{of_unit}"],
         "rows": [_row(specimens[name]) for name in ordered[:_SHOWN]],
         "first": _FIRST,

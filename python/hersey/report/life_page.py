@@ -130,5 +130,5 @@ def _each(found: TimeToFailure) -> dict[str, Any]:
         for mode in found.modes
         for each in mode.ages.units[:_SHOWN]
     ]
-    heads = ["Failure mode", "Specimen", f"Age at the limit{unit}", "Never reached"]
+    heads = ["Failure mode", "Specimen", f"Age at the limit{unit}", "Not reached"]
     return {"title": "All failure modes of each specimen", "heads": heads, "rows": rows, "numeric": [3]}

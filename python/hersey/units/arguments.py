@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import math
 import sys
 import warnings
 from collections.abc import Callable, Mapping
@@ -129,7 +130,7 @@ def _refuse_celsius(name: str, value: Any) -> None:
 
 def _doubt_radius(value: Any) -> None:
     """Warn of a plain number in m that a user can only have meant in mm."""
-    if isinstance(value, float | int) and value > _LARGEST_ROLL and not _called_from_inside():
+    if isinstance(value, float | int) and _LARGEST_ROLL < value < math.inf and not _called_from_inside():
         said = f"roll_radius is {value:g} without a unit, which means {value:g} m. If it is in mm, write"
         warnings.warn(PlausibilityWarning(f"{said} '{value:g} mm'"), stacklevel=_USER)
 

@@ -14,7 +14,6 @@ posterior        what dwells, starts and stick-slip say together
 study            what a log and its machine tell together
 life             ages at failure
 drift            what moved with age
-time_to_failure  growth of indicators, and what ends units
 life_test        a life test followed: all of these
 ===============  ===============================================
 """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from hersey.document.parts.drift import DriftPart
-from hersey.document.parts.time_to_failure import TimeToFailurePart
 from hersey.life.following import LifeTest
 from hersey.schema.record import part_of
 
@@ -11,5 +10,4 @@ from hersey.schema.record import part_of
 class LifeTestPart(part_of(LifeTest)):  # type: ignore[misc]  # made as it runs
     """What ends the specimens of a campaign and when, what moved, film and maps; null where not known."""
 
-    time_to_failure: TimeToFailurePart
     drift: DriftPart | None

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from hersey.life.diagnostics.diagnosis import Diagnosis
     from hersey.log.sensors import Sensors
 
-#: Dwells that are read at once.
-_AT_ONCE = 100_000
 #: Columns of the list of runs.
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
 #: Specimens that a message lists.
@@ -342,29 +340,16 @@ class Campaign:
         import polars as pl
 
         from hersey.life.campaign.conversion import rests_of
+        from hersey.life.campaign.dwells import dwells_of, with_units
 
-        kinds = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
-        columns = ", ".join(f'd."{name}"' for name in COLUMNS)
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            rows = self._database.execute(
-                f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
-                "ORDER BY r.unit, r.age, r.id, d.number"
-            )
-            schema = {"run_id": pl.Int64()} | {name: kinds[kind]() for name, kind in COLUMNS.items()}
-            parts = [pl.DataFrame(schema=schema)]
-            while some := rows.fetchmany(_AT_ONCE):
-                parts.append(pl.DataFrame(some, schema=schema, orient="row"))
-        dwells = pl.concat(parts)
+            dwells = dwells_of(self._database)
         rests = {run: rest for run, (rest, _) in self.drives().items()}
         dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, rests)))
         of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
         joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
-        units = {"start": "s", "end": "s", "load": "N", "tare": "N m", "rest": "N m"}
-        for name, si in (("speed", "rad/s"), ("torque", "N m"), ("temperature", "K")):
-            units |= {name: si, f"{name}_error": si}
-        new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}
-        return joined.rename({**new, "age": f"age ({self.age_unit or 'unit'})"})
+        return with_units(joined, self.age_unit)
 
     def measured(self) -> tuple[IntArray, FloatArray]:
         """Return the numbers of every dwell for computations on torque.
@@ -372,18 +357,11 @@ class Campaign:
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
         """
-        import numpy as np
+        from hersey.life.campaign.dwells import measured_of
 
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            rows = self._database.execute(
-                "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
-            )
-            parts = [np.empty((0, 5))]
-            while some := rows.fetchmany(_AT_ONCE):
-                parts.append(np.array(some, dtype=float))
-        numbers = np.concatenate(parts)
-        return numbers[:, 0].astype(np.intp), numbers[:, 1:]
+            return measured_of(self._database)
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.

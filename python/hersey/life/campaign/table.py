@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import csv
 import os
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hersey.errors import ChannelError, HerseyError, ParameterError, UnreadableLogError
+from hersey.files.headings import headings_of, separator_of
 from hersey.files.reading import open_file
 from hersey.files.tables import text_of
 from hersey.files.text import encoding_of, read_table_text
 from hersey.life.age import Age
 from hersey.life.maintenance import kind_of
 
-_HEADING = re.compile(r"\s*(.*?)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
 _NEEDED = ("log", "unit", "age")
 #: Column that may name what was done to the specimen before the run, or without a log at this age.
 _EVENT = "event"
@@ -56,12 +55,13 @@ def read_runs(path: str | Path) -> RunsTable:
     """
     path = Path(path)
     lines = read_table_text(path).split("\n")
-    separator = _separator(lines[0])
+    separator = separator_of(lines[0])
     try:
         rows = list(csv.reader(lines, delimiter=separator))
     except csv.Error as error:
         raise UnreadableLogError(f"{path.name} is not a table: {error}") from None
-    headings, names = _named(rows[0])
+    headings = headings_of(rows[0])
+    names = [name for name, _ in headings]
     for name in _NEEDED:
         if names.count(name) != 1:
             what = "there is no column" if name not in names else "there is more than one column"
@@ -74,8 +74,7 @@ def read_runs(path: str | Path) -> RunsTable:
     if names.count(_EVENT) > 1:
         raise ChannelError(f"{path.name}: there is more than one column '{_EVENT}'")
     at = {name: names.index(name) for name in (*_NEEDED, *([_EVENT] if _EVENT in names else []))}
-    heading = headings[at["age"]]
-    in_head = (heading and heading[2]) or ""
+    in_head = headings[at["age"]][1]
     found, events = [], []
     for number, row in enumerate(rows[1:], 2):
         if not any(cell.strip() for cell in row):
@@ -119,20 +118,10 @@ def lists_runs(path: str | Path) -> bool:
         return False
     head = start.decode(encoding, errors="replace").splitlines()[:1]
     try:
-        rows = list(csv.reader(head, delimiter=_separator(head[0]))) if head else []
+        rows = list(csv.reader(head, delimiter=separator_of(head[0]))) if head else []
     except csv.Error:
         return False
-    return bool(rows) and set(_NEEDED) <= set(_named(rows[0])[1])
-
-
-def _separator(line: str) -> str:
-    return max(",;\t", key=line.count)
-
-
-def _named(cells: Sequence[str]) -> tuple[list[re.Match[str] | None], list[str]]:
-    """The cells of line 1, each with its unit, and the names of the columns."""
-    headings = [_HEADING.fullmatch(cell) for cell in cells]
-    return headings, [match[1].casefold() if match else "" for match in headings]
+    return bool(rows) and set(_NEEDED) <= {name for name, _ in headings_of(rows[0])}
 
 
 def rows_of(logs: Sequence[Path], rows: Sequence[RunToAdd], table: str) -> list[RunToAdd | ParameterError]:

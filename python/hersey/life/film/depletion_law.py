@@ -9,7 +9,7 @@ that.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,14 +17,15 @@ import numpy as np
 from scipy import special
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.film.layer import DRY, FLOODED, Layers
+from hersey.life.film.layer import Layers
+from hersey.life.film.run_search import DRY, FLOODED
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.oil_layer import log_layer
 
 #: What a specimen has, in this order: ln(h0/h), ln of the rate of loss when new times T, logit of the share
 #: of evaporation in it, ln of the factor on viscosity when new, g T; T is the greatest age, h the flooded
 #: film at the reference.
-LAYER_NEW, LOSS, EVAPORATED, VISCOSITY_NEW, THICKENING = range(5)
+LAYER_NEW, LOSS, EVAPORATED, VISCOSITY_NEW, THICKENING, SENSITIVITY = range(6)
 _NUMBERS = 5
 #: Means over specimens, beforehand: mean and standard deviation; spreads over specimens: scale of a
 #: half-normal.
@@ -43,36 +44,38 @@ _GRID, _SPREADS = 281, 40
 
 @dataclass(frozen=True)
 class Depletion:
-    """Draws of what specimens have, (draws, specimens, 5), and of all: means and spreads, (draws, 5)."""
+    """Draws of what specimens have, (draws, specimens, 6), and of all: means and spreads, (draws, 6).
+
+    The last is the change of ln viscosity from hot to cold, which all have in common.
+    """
 
     specimens: FloatArray
     mean: FloatArray
     spread: FloatArray
     greatest_age: float
     reference: Flooded
-    temperature_sensitivity: float
     rates: Rates
 
     def layer(self, own: FloatArray, age: FloatArray) -> FloatArray:
-        """Return ln of the layer (m) of draws (..., 5) at ages in any unit; shape (..., ages)."""
+        """Return ln of the layer (m) of draws (..., 6) at ages in any unit; shape (..., ages)."""
         scaled, each = np.asarray(age) / self.greatest_age, own[..., None, :]
         return _scale(self.reference) + log_layer(_new(each), *self.rates.of(each), scaled)
 
     def rate(self, own: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 5)."""
+        """Return K (1/(m^2 age)), e and g (1/age) of draws (..., 6)."""
         side_flow, evaporation = self.rates.of(own)
         square = np.exp(2.0 * _scale(self.reference))
         each = (side_flow / square, evaporation, own[..., THICKENING])
         return tuple(rate / self.greatest_age for rate in each)  # type: ignore[return-value]
 
     def viscosity(self, own: FloatArray, age: FloatArray) -> FloatArray:
-        """Return ln of the factor on viscosity of draws (..., 5) at ages; shape (..., ages)."""
+        """Return ln of the factor on viscosity of draws (..., 6) at ages; shape (..., ages)."""
         scaled = np.asarray(age) / self.greatest_age
         return own[..., VISCOSITY_NEW, None] + own[..., THICKENING, None] * scaled
 
     def over_flooded(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
-        """Return ln of the layer over the flooded film at a point, of draws (..., 5) at ages."""
-        at = self.viscosity(own, age) + self.temperature_sensitivity * point.steep.item()
+        """Return ln of the layer over the flooded film at a point, of draws (..., 6) at ages."""
+        at = self.viscosity(own, age) + own[..., SENSITIVITY, None] * point.steep.item()
         return self.layer(own, age) - cubic(point.film.reshape(4), at)[0]
 
 
@@ -218,7 +221,27 @@ def fit_depletion(
     likelihoods = _likelihoods_of(layers, unit, age / greatest, temperature_sensitivity, rates)
     plan = _FEW_SPECIMENS if likelihoods.first.size < _MANY else _MANY_SPECIMENS
     own, mean, spread = _walked(layers, likelihoods, plan, np.random.default_rng(seed))
-    return Depletion(own, mean, spread, greatest, layers.reference, temperature_sensitivity, rates)
+    own, mean = _with(own, temperature_sensitivity), _with(mean, temperature_sensitivity)
+    return Depletion(own, mean, _with(spread, 0.0), greatest, layers.reference, rates)
+
+
+def pooled(each: list[Depletion], weight: FloatArray, seed: int) -> Depletion:
+    """Return as many draws as one of them has, of each by its weight, in no order."""
+    random = np.random.default_rng(seed)
+    many = len(each[0].mean)
+    ends = np.round(many * np.concatenate([[0.0], np.cumsum(weight)])).astype(np.intp)
+    chosen = [random.choice(many, size, replace=False) for size in np.diff(ends).tolist()]
+    order = random.permutation(many)
+    draws = [
+        np.concatenate([getattr(one, name)[some] for one, some in zip(each, chosen, strict=True)])[order]
+        for name in ("specimens", "mean", "spread")
+    ]
+    return replace(each[0], specimens=draws[0], mean=draws[1], spread=draws[2])
+
+
+def _with(values: FloatArray, last: float) -> FloatArray:
+    """Return draws with one more number."""
+    return np.concatenate([values, np.full((*values.shape[:-1], 1), last)], axis=-1)
 
 
 class _Plan(NamedTuple):
@@ -231,7 +254,7 @@ class _Plan(NamedTuple):
 
 
 #: For few specimens, and for so many that they tell the spread over specimens by their number.
-_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 500, 200, 2000), _Plan(16, 320, 120, 240)
+_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 340, 140, 2000), _Plan(16, 320, 120, 240)
 
 
 def _walked(

@@ -9,15 +9,17 @@ that film is, viscosity to the power 0.6.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 
 import numpy as np
+from scipy.special import logit
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.damping.distributions import student_quantile
+from hersey.life.film.common_to_runs import FROM_RUN_TO_RUN, Common, Together, fitted_together
 from hersey.life.film.filled_dwells import FilledDwells
+from hersey.life.film.run_search import ALL_BUT_LAYER, COMMON, DRY, FLOODED, Search
 from hersey.life.film.starved_drag import (
     BOUNDARY,
     CONSTANT,
@@ -26,6 +28,7 @@ from hersey.life.film.starved_drag import (
     PER_KELVIN,
     PER_SPEED,
     ROUGHNESS,
+    SHARPNESS,
     TEMPERATURE_SENSITIVITY,
     VISCOSITY,
     Flooded,
@@ -40,41 +43,26 @@ from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.machine.machine import Machine
 
-#: ln of the layer over the flooded film at the reference from which on nothing starves, and the least.
-FLOODED, DRY = 3.0, -4.0
-#: Layers from which the search begins, and its steps.
-_STARTS = (1.0, 0.2, -0.5, -1.1, -1.8, -2.6)
-_STEPS = 12
 #: Where the likelihood of a run is looked at, in its standard errors from the most likely layer; the last
 #: place is that of a flooded contact.
 _PLACES = np.array([-6.0, -4.0, -3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
 _MIDDLE = 7
 _NARROWEST, _WIDEST, _SEEN = 1e-3, 0.4, 0.9
-#: No torque is taken as known better than these shares of it, and of the greatest of its run.
-_RESOLUTION = (0.003, 0.001)
 #: Dwells that are computed at once.
 _AT_ONCE = 20_000
 #: Standard deviations beforehand: ln of the factors on viscosity, roughness and boundary friction; the rest
 #: of the drive over the greatest torque, and its change in 100 K over the same.
 _LEVEL, _ROUGH, _HARD, _REST, _REST_PER_100_KELVIN = 2.0, 0.7, 0.4, 1.0, 0.05
-#: What belongs to the machine and its oil, common to all runs: viscosity against temperature, sharpness,
-#: rolling.
-_COMMON = slice(TEMPERATURE_SENSITIVITY, LAYER)
-#: Standard deviations beforehand of the last two, and of all three from run to run; runs from which they are
-#: estimated.
-_SHARP, _ROLLED = 0.35, 0.3
-_FROM_RUN_TO_RUN = np.array([0.03, 0.1, 0.1])
+#: Runs from which what is common to all is estimated.
 _RUNS_FOR_SHARED = 120
-#: Ends of the three; films of rolling contacts had a sharpness of 2 to 5.
-_COMMON_ENDS = np.array(
-    [[-0.5, np.log(1.5 / USUAL_SHARPNESS), -0.6], [0.5, np.log(6.5 / USUAL_SHARPNESS), 0.6]]
-)
 #: Share by which viscosity may be off (95 %), where the lubricant does not state it.
 _UNSTATED = 0.2
 #: Standard errors in the 95 % that an uncertainty is stated at.
 _TO_95 = 1.96
-#: Film over roughness below which asperities that the machine does not describe may touch.
-_LEAST_LAMBDA = 4.0
+#: Film over roughness below which asperities that the machine does not describe may touch, and dwells that a
+#: run needs without those.
+LEAST_LAMBDA = 6.0
+_FEWEST = 18
 
 
 @dataclass(frozen=True)
@@ -98,7 +86,12 @@ class Layers:
     freedom: FloatArray
     used: FloatArray  #: dwells
     reference: Flooded
-    common: FloatArray  #: of all runs: change of ln viscosity from hot to cold, ln sharpness, ln rolling
+    common: FloatArray  #: of all runs, in the order of `starved_drag`
+
+    @property
+    def sharpness(self) -> float:
+        """Of starvation."""
+        return USUAL_SHARPNESS * float(np.exp(self.common[SHARPNESS - TEMPERATURE_SENSITIVITY]))
 
     def film_at(self, point: Flooded) -> tuple[FloatArray, FloatArray]:
         """Return ln of the flooded film (m) at a point as each place has it, and its standard error.
@@ -130,8 +123,7 @@ class Layers:
         """Return the most likely ln of the film (m) at a point, and its interval."""
         full, error = self.film_at(point)
         layer = self.place + self.film_at(self.reference)[0] - full
-        sharpness = USUAL_SHARPNESS * float(np.exp(self.common[1]))
-        film = full + log_film_share(layer, sharpness)[0]
+        film = full + log_film_share(layer, self.sharpness)[0]
         best, low, high = self._ends(film - self.place, error, level)
         # However thick the layer, the film is the flooded one.
         most = film[:, -1] + DEVIATIONS * error[:, -1]
@@ -159,67 +151,116 @@ class Layers:
         return best, low, high
 
 
-def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: float) -> Layers:
-    """Return the layers of runs.
-
-    Parameters
-    ----------
-    dwells
-        Of all runs; at least one of each given.
-    machine
-        With contact and lubricant; where it states asperities and boundary friction, their part of the torque
-        is in the law, otherwise dwells whose film is thin against the roughness are left out.
-    speed, kelvin
-        The point (rad/s, K) at which the layer is put in relation to the flooded film.
-
-    Raises
-    ------
-    ParameterError
-        If the machine lacks contact or lubricant, or a temperature is far outside the lubricant's law.
-    """
-    contact, lubricant = film_of(machine)
-    middle = float(np.mean(dwells.kelvin[dwells.given]))
-    mixed = machine.mixed
-    shared = None if mixed is None else SharedLoad.of(mixed, middle)
-    reference = flooded(contact, lubricant, np.array([[speed]]), np.array([[kelvin]]))
-    uncertainty = _UNSTATED if lubricant.uncertainty is None else lubricant.uncertainty
-    beforehand = _Common(np.zeros(3), np.diag([_sensitivity_deviation(uncertainty), _SHARP, _ROLLED]) ** 2)
-
-    table = FloodedTable(contact, lubricant, dwells.speed[dwells.given], dwells.kelvin[dwells.given])
-
-    def searches(rows: Iterable[slice], common: _Common) -> Iterator[_Search]:
-        for chosen in rows:
-            some = dwells.rows(chosen)
-            film = table.at(some.speed, some.kelvin)
-            if shared is None and contact.roughness is not None:
-                some = replace(some, given=_on_film(some.given, film, contact.roughness))
-            law = StarvedDrag(some.speed, some.kelvin - middle, film, reference, contact.roughness, shared)
-            yield _Search(law, some, *_prior(some, common, shared is not None))
-
-    runs, longest = dwells.speed.shape
-    every = max(1, -(-runs // _RUNS_FOR_SHARED))
-    many = max(1, _AT_ONCE // longest)
-    some_runs = [slice(i, min(i + many * every, runs), every) for i in range(0, runs, many * every)]
-    common = beforehand
-    for _ in range(2):  # about its own last answer, with all that was open beforehand
-        common = _shared_by_runs(
-            searches(some_runs, replace(beforehand, mean=common.mean)), common.mean, beforehand
-        )
-    parts = [_profiled(each) for each in searches((slice(i, i + many) for i in range(0, runs, many)), common)]
-    names = [each.name for each in fields(Layers) if each.name not in ("reference", "common")]
-    return Layers(
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
-        reference=reference,
-        common=common.mean,
-    )
-
-
 @dataclass(frozen=True)
-class _Common:
-    """What is common to all runs, as known so far."""
+class LayerFit:
+    """The torque of the dwells of all runs, to be fitted under any assumption on the other drag."""
 
-    mean: FloatArray
-    covariance: FloatArray
+    dwells: FilledDwells
+    table: FloodedTable
+    reference: Flooded
+    other: Flooded  #: where the share of the other drag is stated
+    middle: float  #: temperature, K
+    sensitivity: float  #: standard deviation of the change of ln viscosity from hot to cold
+    roughness: float | None
+    asperities: SharedLoad | None
+
+    @classmethod
+    def of(
+        cls,
+        dwells: FilledDwells,
+        machine: Machine,
+        *,
+        speed: float,
+        kelvin: float,
+        other: tuple[float, float] | None = None,
+    ) -> LayerFit:
+        """Compute the flooded film at the dwells.
+
+        Parameters
+        ----------
+        dwells
+            Of all runs; at least one of each given.
+        machine
+            With contact and lubricant; where it states asperities and boundary friction, their part of the
+            torque is in the law, otherwise dwells whose film is thin against the roughness are left out.
+        speed, kelvin
+            The point (rad/s, K) at which the layer is put in relation to the flooded film.
+        other
+            The point (rad/s, K) at which the share of other drag is stated. Default: the same.
+
+        Raises
+        ------
+        ParameterError
+            If the machine lacks contact or lubricant, or a temperature is far outside the lubricant's law.
+        """
+        contact, lubricant = film_of(machine)
+        middle = float(np.mean(dwells.kelvin[dwells.given]))
+        mixed = machine.mixed
+        reference, at = (
+            flooded(contact, lubricant, np.array([[each[0]]]), np.array([[each[1]]]))
+            for each in ((speed, kelvin), other or (speed, kelvin))
+        )
+        uncertainty = _UNSTATED if lubricant.uncertainty is None else lubricant.uncertainty
+        return cls(
+            dwells,
+            FloodedTable(contact, lubricant, dwells.speed[dwells.given], dwells.kelvin[dwells.given]),
+            reference,
+            at,
+            middle,
+            _sensitivity_deviation(uncertainty),
+            contact.roughness,
+            None if mixed is None else SharedLoad.of(mixed, middle),
+        )
+
+    @property
+    def computed_share(self) -> float:
+        """The share of other drag at its point, of a flooded film, as the rolling part is computed."""
+        over = cubic(self.other.rolled, np.zeros(()))[0].item()
+        return float(over / (1.0 + over))
+
+    def together(self, share: float | None = None) -> Together:
+        """Return what is common to all runs, with a share of other drag (None: as computed)."""
+        least = self.computed_share
+        factor = 0.0 if share is None else float(logit(share) - logit(least))
+        beforehand = Common.beforehand(self.sensitivity, factor)
+        every = max(1, -(-len(self.dwells.given) // _RUNS_FOR_SHARED))
+        searches = list(self._searches(every, beforehand))
+        return fitted_together(searches, beforehand)
+
+    def layers(self, common: Common) -> Layers:
+        """Return the layers of all runs, given what is common to them."""
+        parts = [_profiled(each) for each in self._searches(1, common)]
+        names = [each.name for each in fields(Layers) if each.name not in ("reference", "common")]
+        return Layers(
+            **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
+            reference=self.reference,
+            common=common.mean,
+        )
+
+    def _searches(self, every: int, common: Common) -> Iterator[Search]:
+        """Every so many of the runs, in blocks."""
+        runs, longest = self.dwells.speed.shape
+        many = every * max(1, _AT_ONCE // longest)
+        thick = _nominal(self.other)
+        for first in range(0, runs, many):
+            some = self.dwells.rows(slice(first, min(first + many, runs), every))
+            film = self.table.at(some.speed, some.kelvin)
+            if self.asperities is None and self.roughness is not None:
+                some = replace(some, given=_on_film(some.given, film, self.roughness))
+            warm = some.kelvin - self.middle
+            law = StarvedDrag(some.speed, warm, film, self.reference, thick, self.roughness, self.asperities)
+            yield Search(law, some, *_prior(some, common, self.asperities is not None))
+
+
+def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: float) -> Layers:
+    """Return the layers of runs, the other drag as computed; arguments as `LayerFit.of`."""
+    fit = LayerFit.of(dwells, machine, speed=speed, kelvin=kelvin)
+    return fit.layers(fit.together().common)
+
+
+def _nominal(point: Flooded) -> float:
+    """Logarithm of the flooded film at a point by the machine's file, m."""
+    return float(cubic(point.film, np.zeros(()))[0].item())
 
 
 def _sensitivity_deviation(uncertainty: float) -> float:
@@ -227,31 +268,14 @@ def _sensitivity_deviation(uncertainty: float) -> float:
     return max(float(np.sqrt(2.0) * np.log1p(uncertainty)) / _TO_95, 1e-3)
 
 
-def _shared_by_runs(searches: Iterable[_Search], about: FloatArray, beforehand: _Common) -> _Common:
-    """What is common to all runs, estimated from them together, all else free in each."""
-    known = np.linalg.inv(beforehand.covariance)
-    total, moment = known.copy(), known @ beforehand.mean
-    for search in searches:
-        free, cost, curvature = search.searched(2 * _STEPS)
-        stretch = np.maximum(cost / search.freedom, 1.0)
-        marginal = np.linalg.inv(np.linalg.inv(curvature)[:, _COMMON, _COMMON])
-        prior = search.prior[:, _COMMON, _COMMON]
-        # What the dwells alone say: the answer less what was given to it.
-        total += ((marginal - prior) / stretch[:, None, None]).sum(axis=0)
-        answer = np.matmul(marginal, free[:, _COMMON, None]) - np.matmul(prior, about[:, None])
-        moment += (answer[..., 0] / stretch[:, None]).sum(axis=0)
-    covariance = np.linalg.inv(total)
-    return _Common(np.clip(covariance @ moment, *_COMMON_ENDS), covariance)
-
-
 def _on_film(given: BoolArray, film: Flooded, roughness: float) -> BoolArray:
     """Dwells whose film keeps the faces apart; all of a run that has too few of them."""
-    on_film = given & (cubic(film.film, np.zeros(()))[0] > np.log(_LEAST_LAMBDA * roughness))
-    return np.where((on_film.sum(axis=1) > 2 * LAYER)[:, None], on_film, given)
+    on_film = given & (cubic(film.film, np.zeros(()))[0] > np.log(LEAST_LAMBDA * roughness))
+    return np.where((on_film.sum(axis=1) > _FEWEST)[:, None], on_film, given)
 
 
-def _prior(dwells: FilledDwells, common: _Common, mixed: bool) -> tuple[FloatArray, FloatArray]:
-    """Means and precisions beforehand of what is free, (runs, 10) and (runs, 10, 10)."""
+def _prior(dwells: FilledDwells, common: Common, mixed: bool) -> tuple[FloatArray, FloatArray]:
+    """Means and precisions beforehand of what is free, (runs, 14) and (runs, 14, 14)."""
     greatest = np.where(dwells.given, dwells.torque, 0.0).max(axis=1)
     fastest = np.where(dwells.given, dwells.speed, 0.0).max(axis=1)
     deviation = np.ones((len(greatest), FREE))
@@ -262,13 +286,13 @@ def _prior(dwells: FilledDwells, common: _Common, mixed: bool) -> tuple[FloatArr
     deviation[:, ROUGHNESS], deviation[:, BOUNDARY] = (_ROUGH, _HARD) if mixed else (1e-3, 1e-3)
     deviation[:, LAYER] = 1e6
     mean = np.zeros_like(deviation)
-    mean[:, _COMMON] = common.mean
+    mean[:, COMMON] = common.mean
     precision = np.eye(FREE) * (deviation**-2)[:, :, None]
-    precision[:, _COMMON, _COMMON] = np.linalg.inv(common.covariance + np.diag(_FROM_RUN_TO_RUN**2))
+    precision[:, COMMON, COMMON] = np.linalg.inv(common.covariance + np.diag(FROM_RUN_TO_RUN**2))
     return mean, precision
 
 
-def _profiled(search: _Search) -> Layers:
+def _profiled(search: Search) -> Layers:
     """Follow what else is free from the most likely layer to thinner and to thicker ones."""
     free, _, precision = search.searched()
     width = np.clip(np.sqrt(np.linalg.inv(precision)[:, LAYER, LAYER]), _NARROWEST, _WIDEST)
@@ -281,7 +305,7 @@ def _profiled(search: _Search) -> Layers:
         trial = free.copy()
         for k in order:
             trial[:, LAYER] = places[:, k]
-            trial, costs[:, k], precision = search.settled(trial, steps=2, layer=False)
+            trial, costs[:, k], precision = search.settled(trial, steps=2, of=ALL_BUT_LAYER)
             covariance = np.linalg.inv(precision[:, :LAYER, :LAYER])
             kept[:, k, :2] = trial[:, [VISCOSITY, TEMPERATURE_SENSITIVITY]]
             kept[:, k, 2:] = np.sqrt(
@@ -302,91 +326,5 @@ def _profiled(search: _Search) -> Layers:
         freedom=search.freedom,
         used=search.dwells.given.sum(axis=1),
         reference=search.drag.reference,
-        common=np.zeros(3),
+        common=np.zeros(0),
     )
-
-
-@dataclass(frozen=True)
-class _Search:
-    """Least squares over the dwells and what is known beforehand, by damped steps (Levenberg 1944)."""
-
-    drag: StarvedDrag
-    dwells: FilledDwells
-    mean: FloatArray
-    prior: FloatArray
-
-    @property
-    def freedom(self) -> FloatArray:
-        """Degrees of freedom of each run."""
-        # What is common to all runs costs none of one.
-        return np.asarray(np.maximum(self.dwells.given.sum(axis=1) - FREE + 3.0, 1.0))
-
-    def searched(self, steps: int = _STEPS) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return what is most likely from any start, its squares and their curvature."""
-        free = self.start(0.0)
-        cost = np.full(len(free), np.inf)
-        for layer in _STARTS:
-            trial, found, _ = self.settled(self.start(layer), steps=2, layer=False)
-            free = np.where((found < cost)[:, None], trial, free)
-            cost = np.minimum(found, cost)
-        return self.settled(free, steps=steps, layer=True)
-
-    @cached_property
-    def _weight(self) -> FloatArray:
-        dwells = self.dwells
-        greatest = np.where(dwells.given, dwells.torque, 0.0).max(axis=1, keepdims=True)
-        of_own, of_greatest = _RESOLUTION
-        error = np.sqrt(dwells.error**2 + (of_own * dwells.torque) ** 2 + (of_greatest * greatest) ** 2)
-        return np.where(dwells.given, 1.0 / error, 0.0)
-
-    def start(self, layer: float) -> FloatArray:
-        """Return what is known beforehand, with a layer."""
-        free = self.mean.copy()
-        free[:, LAYER] = layer
-        return free
-
-    def _moved(self, free: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        torque, slopes = self.drag.torque(free)
-        weight = self._weight
-        left = weight * (self.dwells.torque - torque)
-        slopes *= weight[:, None]
-        away = self.mean - free
-        pulled = np.matmul(self.prior, away[..., None])[..., 0]
-        square = (left**2).sum(axis=1) + (away * pulled).sum(axis=1)
-        gradient = np.matmul(slopes, left[..., None])[..., 0] + pulled
-        return square, gradient, np.matmul(slopes, slopes.transpose(0, 2, 1)) + self.prior
-
-    def settled(
-        self, free: FloatArray, *, steps: int, layer: bool
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return what is most likely from a start on, the layer free or held; squares and curvature."""
-        many = FREE if layer else LAYER
-        inner = np.arange(many)
-        best = trial = free
-        least, gradient, curvature = self._moved(free)
-        damping = np.full(len(free), 1e-4)
-        for _ in range(steps):
-            damped = curvature[:, :many, :many].copy()
-            damped[:, inner, inner] *= 1.0 + damping[:, None]
-            step = np.linalg.solve(damped, gradient[:, :many, None])[..., 0]
-            trial = best.copy()
-            trial[:, :many] += step
-            trial[:, VISCOSITY] = np.clip(trial[:, VISCOSITY], *_near(best[:, VISCOSITY], 0.7, -3.0, 5.0))
-            trial[:, LAYER] = np.clip(trial[:, LAYER], *_near(best[:, LAYER], 0.5, DRY, FLOODED))
-            trial[:, ROUGHNESS:TEMPERATURE_SENSITIVITY] = np.clip(
-                trial[:, ROUGHNESS:TEMPERATURE_SENSITIVITY], -2.0, 2.0
-            )
-            trial[:, _COMMON] = np.clip(trial[:, _COMMON], *_COMMON_ENDS)
-            square, *moved = self._moved(trial)
-            better = square < least
-            best = np.where(better[:, None], trial, best)
-            least = np.minimum(square, least)
-            gradient = np.where(better[:, None], moved[0], gradient)
-            curvature = np.where(better[:, None, None], moved[1], curvature)
-            damping = np.clip(np.where(better, 0.1 * damping, 100.0 * damping), 1e-9, 1e6)
-        return best, least, curvature
-
-
-def _near(at: FloatArray, stride: float, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-    """Ends of one step."""
-    return np.maximum(at - stride, low), np.minimum(at + stride, high)

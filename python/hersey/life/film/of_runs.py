@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,11 +11,13 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
-from hersey.life.film.layer import Layers, layers
+from hersey.life.film.layer import LEAST_LAMBDA, LayerFit, Layers
+from hersey.life.film.shares import ByShare, by_share
 from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
 from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.indicator import Indicator, Runs
-from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.life.oil_layer import log_film_share
+from hersey.machine.sharing import NEEDED
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
 from hersey.units import celsius, rpm
@@ -24,6 +26,10 @@ if TYPE_CHECKING:
     from hersey.life.campaign import Campaign
     from hersey.machine.machine import Machine
 
+#: What is most likely, and both ends of its interval.
+Ends = tuple[FloatArray, ...]
+#: How likely a share of other drag is for whose sake an interval is widened.
+_LIKELY = 0.1
 #: Dwells of a run from which it shows a film.
 _FEWEST = 6
 #: Kelvin between the coldest and the hottest dwell of a run from which it shows a film.
@@ -64,10 +70,15 @@ class FilmOfRuns:
 
     runs: Runs
     places: IntArray
-    layers: Layers
+    by_share: ByShare
     points: tuple[FilmPoint, ...]
     flooded: tuple[Flooded, ...]
     warnings: tuple[Warning, ...]
+
+    @property
+    def layers(self) -> Layers:
+        """The layers at the likeliest share of other drag."""
+        return self.by_share.likeliest
 
     def of_all(self, values: FloatArray) -> FloatArray:
         """Return values of all runs, NaN where one has no dwells."""
@@ -75,42 +86,40 @@ class FilmOfRuns:
         every[self.places] = values
         return every
 
-    def spread(self, *ends: FloatArray) -> Estimates:
-        """Return a value and the ends of its interval of all runs."""
-        return Estimates(*(self.of_all(each) for each in ends))
+    def spread(self, of: Callable[[Layers], Ends]) -> Estimates:
+        """Return a value and the ends of its interval of all runs, whatever the share of other drag."""
+        return Estimates(*(self.of_all(np.exp(each)) for each in self._ends(of)))
+
+    def _ends(self, of: Callable[[Layers], Ends]) -> Ends:
+        """Value at the likeliest share, and the widest ends at any that is likely enough."""
+        if not self.by_share.is_of_all:
+            return of(self.layers)
+        pairs = zip(self.by_share.layers, self.by_share.weight, strict=True)
+        ends = [of(each)[1:] for each, weight in pairs if weight > _LIKELY]
+        low, high = (np.array(each) for each in zip(*ends, strict=True))
+        return of(self.layers)[0], low.min(axis=0), high.max(axis=0)
 
     def film(self, point: Flooded) -> Estimates:
         """Return the film over the flooded one at a point."""
-        sharpness = USUAL_SHARPNESS * float(np.exp(self.layers.common[1]))
         return self.spread(
-            *(np.exp(log_film_share(each, sharpness)[0]) for each in self.layers.interval(point))
+            lambda found: tuple(log_film_share(each, found.sharpness)[0] for each in found.interval(point))
         )
 
     def thickness(self, point: Flooded) -> Estimates:
         """Return the film at a point, m."""
-        return self.spread(*(np.exp(each) for each in self.layers.film(point)))
+        return self.spread(lambda found: found.film(point))
 
     def layer(self) -> Estimates:
         """Return the layer of oil, m."""
-        return self.spread(*(np.exp(each) for each in self.layers.thickness()))
+        return self.spread(Layers.thickness)
 
     def viscosity(self) -> Estimates:
         """Return the factor on viscosity at the middle temperature; its error includes that of the layer."""
-        found = self.layers
-        value, error = np.empty(len(found.best)), np.empty(len(found.best))
-        for i, place in enumerate(found.place):
-            weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
-            weight /= weight.sum()
-            value[i] = np.interp(found.best[i], place, found.viscosity[i])
-            away = found.viscosity[i] - value[i]
-            error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
-        return self.spread(
-            *(np.exp(value + deviations * error) for deviations in (0.0, -DEVIATIONS, DEVIATIONS))
-        )
+        return self.spread(_viscosity)
 
-    def indicator(self) -> Indicator:
-        """Return starvation as a failure mode: flooded film over layer, limit 1."""
-        best, low, high = self.layers.interval(self.flooded[0])
+    def indicator(self, more: tuple[Warning, ...] = ()) -> Indicator:
+        """Return starvation as a failure mode, with more warnings: flooded film over layer, limit 1."""
+        best, low, high = self._ends(lambda found: found.interval(self.flooded[0]))
         seen = np.isfinite(low) & np.isfinite(high)
         value = np.where(seen, np.exp(-best), np.nan)
         error = np.where(seen, np.where(seen, high - low, 0.0) / (2.0 * DEVIATIONS), np.nan)
@@ -131,8 +140,21 @@ class FilmOfRuns:
                     temperature=self.points[0].temperature,
                 ),
                 *self.warnings,
+                *more,
             ),
         )
+
+
+def _viscosity(found: Layers) -> Ends:
+    """Most likely ln of the factor on viscosity, and its interval."""
+    value, error = np.empty(len(found.best)), np.empty(len(found.best))
+    for i, place in enumerate(found.place):
+        weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
+        weight /= weight.sum()
+        value[i] = np.interp(found.best[i], place, found.viscosity[i])
+        away = found.viscosity[i] - value[i]
+        error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
+    return value, value - DEVIATIONS * error, value + DEVIATIONS * error
 
 
 def film_of_runs(
@@ -161,7 +183,11 @@ def film_of_runs(
         )
     dwells, places = dwells.rows(np.flatnonzero(usable)), places[usable]
     points = _points(machine, dwells, [runs.unit[i] for i in places], cold)
-    found = layers(dwells, machine, speed=points[1].speed, kelvin=points[1].temperature)
+    fast, cold_corner = ((each.speed, each.temperature) for each in points)
+    fit = LayerFit.of(dwells, machine, speed=cold_corner[0], kelvin=cold_corner[1], other=fast)
+    _refuse_touching(fit, points[0])
+    by = by_share(fit, [runs.unit[i] for i in places])
+    found = by.likeliest
     if (scatter := float(np.median(found.scatter))) > _BAD:
         raise InsufficientDataError(
             f"dwells of most runs scatter about the fit of the film by more than {_BAD:g} times their "
@@ -181,7 +207,20 @@ def film_of_runs(
             runs=usable.size,
         )
         warnings = (few, *warnings)
-    return FilmOfRuns(runs, places, found, points, films, warnings)
+    return FilmOfRuns(runs, places, by, points, films, warnings)
+
+
+def _refuse_touching(fit: LayerFit, point: FilmPoint) -> None:
+    """Refuse faces that may touch before the film starves, and of which the machine says nothing."""
+    if fit.asperities is not None or fit.roughness is None:
+        return
+    over = float(np.exp(cubic(fit.other.film, np.zeros(()))[0].item())) / fit.roughness
+    if over < LEAST_LAMBDA:
+        raise InsufficientDataError(
+            f"the flooded film at {point.name} is {over:.2g} times the roughness. Below {LEAST_LAMBDA:g} "
+            "times, faces that touch raise the torque as a film does that starves. Add [asperities] "
+            f"{NEEDED['asperities']} and [boundary] {NEEDED['boundary']} to the machine file"
+        )
 
 
 def _shows_film(dwells: FilledDwells) -> BoolArray:

@@ -1,8 +1,9 @@
 """Torque of dwells where the film may lack oil, against viscosity, no-load torque and layer of oil.
 
 A starved film is a share of the flooded one (`log_film_share`). Its shear is proportional to the inverse of
-that share, its rolling part to the third power, as in `Film`. All runs are computed at once, in arrays of
-shape (runs, dwells).
+that share, within the power that torque has of the film. The rest of what viscosity and speed raise does not
+follow the film: rolling, which in `Film` falls as the third power of the share, but also seals and gears. How
+large it is, and how it varies, is free. All runs are computed at once, in arrays of shape (runs, dwells).
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.errors import ParameterError
-from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_fading_share, log_film_share
 from hersey.lubrication.contact import Contact
 from hersey.lubrication.film import film_thickness
 from hersey.lubrication.film_temperature import film_temperature
@@ -29,6 +30,10 @@ _TO_POWERS = np.linalg.inv(np.vander(_NODES, increasing=True))
 _ALONG = 24
 #: ln of film over roughness at which the share of the asperities is tabled.
 _TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
+#: Factor on roughness at which `rubbing` is looked at: films get thinner, and faces rougher.
+_ROUGHER = 2.0
+#: Least part of the drag that does not follow the film, over shear: some laws of the film know of none.
+_LEAST_ROLLED = 0.01
 #: What is free in a run, in this order, with the index of each.
 (
     VISCOSITY,
@@ -40,8 +45,12 @@ _TABLE = np.linspace(np.log(0.02), np.log(60.0), 600)
     TEMPERATURE_SENSITIVITY,
     SHARPNESS,
     ROLLING,
+    ROLLING_BY_FLOODED,
+    ROLLING_BY_SHARE,
+    FILM_POWER,
+    FADING,
     LAYER,
-) = range(10)
+) = range(14)
 FREE = LAYER + 1
 
 
@@ -70,7 +79,7 @@ def flooded(contact: Contact, lubricant: Lubricant, speed: FloatArray, kelvin: F
             replace(contact, supply=None), lubricant, speed=node * speed, temperature=inside
         )
         shear.append(np.log(state.shear))
-        rolled.append(state.rolling / state.shear)
+        rolled.append(np.maximum(state.rolling / state.shear, _LEAST_ROLLED))
         film.append(np.log(state.central * state.factor))
     cold, hot = lubricant.temperature_range
     middle = 2.0 * cold * hot / (cold + hot)
@@ -143,16 +152,27 @@ class StarvedDrag:
     warm: FloatArray  #: K above the middle of the dwells
     flooded: Flooded
     reference: Flooded  #: of one point, shape (4, 1, 1): that of the layer
+    thick: float  #: ln of the flooded film (m) where the powers of it are 1
     roughness: float | None
     shared: SharedLoad | None
 
+    def rubbing(self) -> FloatArray:
+        """Return what asperities would add to torque with faces rougher by `_ROUGHER`, the inlet flooded."""
+        film, _ = cubic(self.flooded.film, np.zeros(()))
+        if self.shared is None or self.roughness is None:
+            return np.zeros_like(film)
+        return np.asarray(self.shared.at(film - np.log(_ROUGHER * self.roughness))[0][0])
+
     def torque(self, free: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return torque (runs, dwells), N m, and its slopes (runs, free, dwells) at what is free (runs, 10).
+        """Return torque (runs, dwells), N m, and its slopes (runs, free, dwells) at what is free (runs, 14).
 
         Free are ln of the factor on viscosity at the middle temperature; the no-load torque (N m, N m
         s/rad, N m/K); ln of the factors on roughness and on boundary friction; the change of ln viscosity
-        from the hot to the cold end; ln of the factors on the sharpness of starvation and on the rolling
-        part; and ln of the layer over the flooded film at the reference.
+        from the hot to the cold end; ln of the factor on the sharpness of starvation; of the part that
+        does not follow the film ln of the factor, the power of the flooded film on it, and that of the share
+        of the film that is left; the power of the film, less 1, in shear; how far
+        starvation is by the law that fades (0 to 1); and ln of the layer over the
+        flooded film at the reference.
         """
         column = free.T[:, :, None]
         at = column[VISCOSITY] + column[TEMPERATURE_SENSITIVITY] * self.flooded.steep
@@ -161,15 +181,18 @@ class StarvedDrag:
         least, by_least = cubic(self.reference.film, there)
         layer = column[LAYER] + least - film
         sharpness = USUAL_SHARPNESS * np.exp(column[SHARPNESS])
-        log_share, by_layer = log_film_share(layer, sharpness)
-        share = np.exp(log_share)
+        slow, by_slow = log_film_share(layer, sharpness)
+        soon, by_soon = log_fading_share(layer, sharpness)
+        fading = column[FADING]
+        log_share, by_layer = slow + fading * (soon - slow), by_slow + fading * (by_soon - by_slow)
         shear, by_shear = cubic(self.flooded.shear, at)
         rolled, by_rolled = cubic(self.flooded.rolled, at)
-        flowing = np.exp(shear)
-        sheared = flowing / share
-        thinned = flowing * np.exp(column[ROLLING]) * share * share * share
+        over, power = film - self.thick, column[FILM_POWER]
+        by_flooded, by_share = column[ROLLING_BY_FLOODED], column[ROLLING_BY_SHARE]
+        sheared = np.exp(shear - power * over - (1.0 + power) * log_share)
+        thinned = np.exp(shear + column[ROLLING] + by_flooded * over + by_share * log_share)
         rolling = thinned * rolled
-        touching, of_ratio = np.zeros_like(share), np.zeros_like(share)
+        touching, of_ratio = np.zeros_like(film), np.zeros_like(film)
         if self.shared is not None and self.roughness is not None:
             ratio = film + log_share - (np.log(self.roughness) + column[ROUGHNESS])
             values, steps = self.shared.at(ratio)
@@ -179,10 +202,11 @@ class StarvedDrag:
             sheared = sheared * values[1]
         rest = column[CONSTANT] + column[PER_SPEED] * self.speed + column[PER_KELVIN] * self.warm
         # By ln film over roughness, ln share of the film, and ln viscosity with the layer held.
-        of_share = 3.0 * rolling - sheared + of_ratio
+        of_share = by_share * rolling - (1.0 + power) * sheared + of_ratio
         of_layer = of_share * by_layer
-        straight = (sheared + rolling) * by_shear + thinned * by_rolled + of_ratio * by_film
-        slopes = np.empty((share.shape[0], FREE, share.shape[1]))
+        of_flooded = by_flooded * rolling - power * sheared + of_ratio
+        straight = (sheared + rolling) * by_shear + thinned * by_rolled + of_flooded * by_film
+        slopes = np.empty((film.shape[0], FREE, film.shape[1]))
         slopes[:, VISCOSITY] = straight + of_layer * (by_least - by_film)
         slopes[:, CONSTANT], slopes[:, PER_SPEED], slopes[:, PER_KELVIN] = 1.0, self.speed, self.warm
         slopes[:, ROUGHNESS], slopes[:, BOUNDARY] = -of_ratio, touching
@@ -191,6 +215,9 @@ class StarvedDrag:
         )
         slopes[:, SHARPNESS] = of_share * (layer * by_layer - log_share)
         slopes[:, ROLLING] = rolling
+        slopes[:, ROLLING_BY_FLOODED], slopes[:, ROLLING_BY_SHARE] = rolling * over, rolling * log_share
+        slopes[:, FILM_POWER] = -sheared * (over + log_share)
+        slopes[:, FADING] = of_share * (soon - slow)
         slopes[:, LAYER] = of_layer
         return sheared + rolling + touching + rest, slopes
 

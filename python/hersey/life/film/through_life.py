@@ -6,20 +6,23 @@ both in `starving`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any
+from functools import partial
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.film.depletion_law import fit_depletion
+from hersey.life.film.depletion_law import Depletion, fit_depletion, pooled
 from hersey.life.film.of_runs import Estimates, FilmOfRuns, FilmPoint, film_of_runs, systematic_factor
+from hersey.life.film.shares import SHARES, OtherDrag, other_drag, slower_by_share
 from hersey.life.film.starved_drag import film_of
-from hersey.life.film.starving import LayersOfSpecimens, OilLeft
+from hersey.life.film.starving import LayersOfSpecimens, OilLeft, starves_at
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
+from hersey.life.maintenance import OF_FRICTION
 from hersey.life.oil_layer import USUAL_SHARPNESS
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
@@ -47,8 +50,8 @@ class FilmLife(Result):
     that of a flooded inlet at the same viscosity and speed, and its ``thickness`` (m); and the ``layer`` of
     oil on the inlet side (m), and ``viscosity`` over that of the lubricant. Lengths are right but for
     ``systematic``, a factor common to all runs; NaN where a run has no dwells. Of each specimen at ``ages``:
-    ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be; ``starves`` at each
-    point.
+    ``curves`` of the film over flooded, ``layers``, and what a layer ``needs`` to be, NaN before a layer was
+    renewed; ``starves`` at each point.
     """
 
     also_stated = ("starved",)
@@ -72,13 +75,16 @@ class FilmLife(Result):
         tuple[Estimates, ...], Means("ratio of film to flooded film at each point, shape (units, ages)")
     ]
     layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
-    needs: Annotated[tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)")]
+    needs: Annotated[
+        tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)", open=True)
+    ]
     starves: Annotated[tuple[AgesAtLimit, ...], Means("ages at which the film starves, at each point")]
     law: Annotated[
         dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age")
     ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
     oil: Annotated[tuple[OilLeft, ...], Means("in the layer of each specimen, at the first point")]
     track: float
+    other_drag: Annotated[OtherDrag, Means("what does not follow the film")]
     warnings: tuple[Warning, ...]
     _starvation: Indicator = field(repr=False)
 
@@ -123,6 +129,7 @@ class FilmLife(Result):
                 lines.append("  all specimens: starved from new")
             else:
                 lines += [f"  {each}" for each in ages.units]
+        lines += self.other_drag.lines(unit, self.points[0].name)
         lines.append(
             f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
             f"seen, and needed for a flooded film at {self.points[0].name}"
@@ -220,8 +227,9 @@ def film_life(
     """
     _refuse_impossible(side_flow, evaporation, track)
     read = film_of_runs(campaign, machine, machine.life.coldest if cold is None else cold, excluded)
-    age = read.runs.age[read.places]
-    of_run = [read.runs.unit[i] for i in read.places]
+    segments = read.runs.segments(OF_FRICTION)
+    age = segments.age[read.places]
+    of_run = [segments.name[i] for i in read.places]
     names = list(dict.fromkeys(of_run))
     place = np.array([names.index(name) for name in of_run])
     if most_ages(place, age) < 2:
@@ -229,10 +237,55 @@ def film_life(
             "no specimen was measured at two ages, so how its oil layer thins is unknown. Add runs at "
             "another age"
         )
-    drawn = fit_depletion(read.layers, place, age, side_flow=side_flow, evaporation=evaporation, seed=seed)
+    drawing = partial(fit_depletion, side_flow=side_flow, evaporation=evaporation, seed=seed)
     last = np.array([age[place == k].max() for k in range(len(names))])
-    warnings = (*read.warnings, *_of_the_law(age, place, machine))
-    return _film_life(read, LayersOfSpecimens(drawn, names, last), machine, track, warnings)
+    layers, other = _followed(read, SpecimensOfRuns(names, place, age, last), machine, drawing, seed)
+    layers = layers.of(read.runs.units, segments.begun)
+    layers = replace(layers, last=np.array([_last_age(read.runs, name) for name in layers.names]))
+    warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
+    return _film_life(read, layers, machine, track, other, warnings)
+
+
+class SpecimensOfRuns(NamedTuple):
+    """Specimens of runs: names, number and age of each run, and age when last seen."""
+
+    names: list[str]
+    place: IntArray
+    age: FloatArray
+    last: FloatArray
+
+    def some(self, runs: IntArray) -> SpecimensOfRuns:
+        """Return those of some runs."""
+        numbers, place = np.unique(self.place[runs], return_inverse=True)
+        names = [self.names[k] for k in numbers]
+        return SpecimensOfRuns(names, place, self.age[runs], self.last[numbers])
+
+
+def _followed(
+    read: FilmOfRuns,
+    runs: SpecimensOfRuns,
+    machine: Machine,
+    drawing: Callable[..., Depletion],
+    seed: int,
+) -> tuple[LayersOfSpecimens, OtherDrag]:
+    """The layers of all specimens whatever the share of other drag, and ages at each share."""
+    by, point = read.by_share, read.flooded[0]
+    some = runs.some(by.some)
+    each = [drawing(layers, some.place, some.age) for layers in by.layers]
+    starves = [
+        starves_at(LayersOfSpecimens(drawn, some.names, some.last), point, share)
+        for drawn, share in zip(each, SHARES.tolist(), strict=True)
+    ]
+    bounded = np.isfinite(read.layers.interval()[2])
+    seen = np.bincount(runs.place, bounded, len(runs.names)) > 0.0
+    roughness, slower = film_of(machine)[0].roughness, None
+    if by.is_of_all:
+        drawn = pooled(each, by.weight, seed)
+    else:
+        drawn = drawing(by.likeliest, runs.place, runs.age)
+        slower = slower_by_share(starves, by.weight, len(drawn.mean), seed)
+    layers = LayersOfSpecimens(drawn, runs.names, runs.last, roughness, slower, seen)
+    return layers, other_drag(by, starves)
 
 
 def _refuse_impossible(side_flow: float | None, evaporation: float | None, track: float | None) -> None:
@@ -248,11 +301,13 @@ def _film_life(
     layers: LayersOfSpecimens,
     machine: Machine,
     track: float | None,
+    other_drag: OtherDrag,
     warnings: tuple[Warning, ...],
 ) -> FilmLife:
     ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
     starving = [layers.starving(point) for point in read.flooded]
+    begun = read.runs.segments(OF_FRICTION).begun
     pairs = zip(starving, read.points, strict=True)
     return FilmLife(
         runs=read.runs,
@@ -271,8 +326,31 @@ def _film_life(
         law=layers.rates(),
         oil=layers.oil(read.flooded[0], length * film_of(machine)[0].length),
         track=length,
+        other_drag=other_drag,
         warnings=warnings,
-        _starvation=replace(read.indicator(), own_ages=layers.with_all(starving[0], read.runs.units)),
+        _starvation=replace(read.indicator((warnings[-1],)), own_ages=layers.with_all(starving[0], begun)),
+    )
+
+
+def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
+    """How the ages depend on the drag that does not follow the film."""
+    few, many = other.starves[0], other.starves[-1]
+    return Warning(
+        "other drag",
+        "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
+        "With more such drag specimens starve {direction}: the median one at {few} {age_unit} if it is "
+        "{least:.0f %}, at {many} if it is {most:.0f %}. To determine it, log one specimen flooded with "
+        "fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
+        severity="note" if other.determined else "watch",
+        low=other.low,
+        high=other.high,
+        point=read.points[0].name,
+        age_unit=read.runs.age_unit,
+        least=few.share,
+        few=few.shown,
+        most=many.share,
+        many=many.shown,
+        direction="sooner" if other.sooner else "later",
     )
 
 
@@ -304,6 +382,10 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
         )
     )
     return warnings
+
+
+def _last_age(runs: Runs, name: str) -> float:
+    return float(max(age for unit, age in zip(runs.unit, runs.age, strict=True) if unit == name))
 
 
 def _last_runs(runs: Runs) -> list[int]:

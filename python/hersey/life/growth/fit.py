@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 NAMED, UNCHANGED = 0.9, 0.5
 #: Draws behind every interval; of more than so many specimens.
 _DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
+#: Power of the evidence of laws that grow, over each other.
+COARSE = 0.5
 #: Level of the upper bound of a rate.
 _AT_MOST = 0.95
 #: Draws, about, behind the middle of a curve.
@@ -188,9 +190,8 @@ class Growth(Result):
             self.quantity,
             self.age_unit,
             limit,
-            self.units,
+            dict(zip(self.units, self.last_age, strict=True)),
             own,
-            self.last_age,
             self.warnings,
             accumulates=accumulates,
             earliest=earliest,
@@ -272,9 +273,11 @@ def fit_growth(
     """Fit the growth of a positive indicator over specimens.
 
     Priors, all weak: ln(r T) of the median specimen N(-0.5, 2^2), T being the greatest age (ln s of a
-    saturating law); standard deviations between specimens half-normal of scale 1 (ln of level and rate);
-    scatter of runs half-normal of scale 0.1; ln(tau/T) N(0.3, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p
-    N(1, 1). Growth and no growth are equally probable a priori; the growth laws share their half equally.
+    saturating law); standard deviations between specimens of ln of level and rate lognormal, of medians 0.1
+    and 0.3 and logarithms that spread by 1.2 and 0.8; scatter of runs half-normal of scale 0.1; ln(tau/T)
+    N(0.3, 1), of a run-in N(-2, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p N(1, 1); ln m N(0.3, 0.4^2);
+    logit d N(-2, 1). Growth and no growth are equally probable a priori; the growth laws share their half
+    equally, and then by the square root of their evidence, since none of them is quite true.
 
     Parameters
     ----------
@@ -305,7 +308,7 @@ def fit_growth(
     >>> growth = fit_growth(["A"] * 4 + ["B"] * 4, [0, 10, 20, 30] * 2,
     ...                     [1, 1.2, 1.4, 1.6, 1.1, 1.4, 1.7, 2.0], 0.005, laws=["linear"])
     >>> [round(each.age.value) for each in growth.reaches(2.0).units]
-    [50, 30]
+    [49, 30]
     """
     chosen = _chosen(laws)
     names, columns = checked_runs(unit, age, value, error)
@@ -314,8 +317,7 @@ def fit_growth(
     random = np.random.default_rng(seed)
     found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
-    evidence = np.array([each.log_evidence + before[each.law.name] for each in found])
-    weights = np.exp(evidence - special.logsumexp(evidence))
+    weights = _weights(found, np.array([before[each.law.name] for each in found]))
     by_law = {law.name: 0.0 for law in chosen} | {
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
@@ -343,6 +345,21 @@ def fit_growth(
         _scale=scale,
         seed=seed,
     )
+
+
+def _weights(found: list[Posterior], before: FloatArray) -> FloatArray:
+    """Weights of laws by their evidence; among those that grow, none of which is quite true, by its power.
+
+    Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am.
+    Stat. Assoc. 114 (2019) 1113).
+    """
+    evidence = before + np.array([each.log_evidence for each in found])
+    grows = np.array([each.law.grows for each in found])
+    weights = np.exp(evidence - special.logsumexp(evidence))
+    total = weights[grows].sum()
+    coarse = COARSE * evidence[grows]
+    weights[grows] = total * np.exp(coarse - special.logsumexp(coarse)) if total > 0.0 else 0.0
+    return np.asarray(weights)
 
 
 def _as_if_growing(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,8 +24,9 @@ CONFIDENCE = 0.9
 #: Standard deviations of a normal distribution in half of such an interval.
 DEVIATIONS = 1.645
 #: A law is fitted up to the last run, and growth may depart from it later: what the law does at age t comes
-#: at last (t / last)^k. Standard deviations of ln k, in common to all specimens and of each alone.
-BEYOND, OWN_BEYOND = 0.10, 0.10
+#: at last (t / last)^k. Mean of ln k, below 0 as what sets in later adds to growth, and its standard
+#: deviations in common to all specimens and of each alone.
+SOONER, BEYOND, OWN_BEYOND = -0.05, 0.12, 0.12
 #: Share of draws from which it is worth a word that they do not reach a limit.
 _SAID = 0.05
 #: Probability of having failed from which a specimen has failed, and up to which it is still running.
@@ -222,9 +223,8 @@ def ages_at_limit(
     quantity: str,
     age_unit: str,
     limit: float,
-    names: Sequence[str],
+    last: Mapping[str, float],
     own: OwnAges,
-    last: Sequence[float] | FloatArray,
     warnings: tuple[Warning, ...],
     *,
     accumulates: bool = False,
@@ -235,11 +235,11 @@ def ages_at_limit(
     ``accumulates``: the limit is that of the integral of the quantity over age. ``earliest`` is stated of a
     quantity that does not grow.
     """
-    least = earliest or Earliest.unknown(len(names))
+    least = earliest or Earliest.unknown(len(last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
     known = [
-        age_at_limit(name, own.known[:, i], float(last[i]), float(least.units[i]))
-        for i, name in enumerate(names)
+        age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]))
+        for i, (name, seen) in enumerate(last.items())
     ]
     b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
@@ -312,7 +312,7 @@ def beyond(random: np.random.Generator, draws: int, *widths: int) -> tuple[Float
     One array of equally probable draws for each of ``widths``: numbers of specimens. Part of a row is in
     common to it, over all arrays.
     """
-    common = BEYOND * heavy_tailed(random, (draws, 1))
+    common = SOONER + BEYOND * heavy_tailed(random, (draws, 1))
     return tuple(np.exp(common + OWN_BEYOND * heavy_tailed(random, (draws, each))) for each in widths)
 
 

@@ -14,8 +14,10 @@ from hersey.life.growth.points import Points
 
 #: Prior mean and standard deviation of m1 = E ln(r T). m0 is flat.
 RATE_PRIOR = (-0.5, 2.0)
-#: Scales of the half-normal priors of the spreads of level and rate, and of the scatter of runs.
-LEVEL_SPREAD, RATE_SPREAD, RUN_SCATTER = 1.0, 1.0, 0.1
+#: Medians of the priors of the spreads of level and rate, and standard deviations of their logarithms.
+LEVEL_SPREAD, RATE_SPREAD = (0.1, 1.2), (0.3, 0.8)
+#: Scale of the half-normal prior of the scatter of runs.
+RUN_SCATTER = 0.1
 #: Specimens whose mode is sought before that of all.
 _FIRST = 40
 #: How much worse, in ln evidence, a law may fit to be drawn from at all.
@@ -39,6 +41,11 @@ def _half_normal(logs: FloatArray, scale: float) -> FloatArray:
 
 def _normal(values: FloatArray, mean: float, deviation: float) -> FloatArray:
     return -0.5 * ((values - mean) / deviation) ** 2 - math.log(deviation * math.sqrt(2.0 * math.pi))
+
+
+def _log_normal(logs: FloatArray, median: float, deviation: float) -> FloatArray:
+    """Log density of the logarithm of a lognormal number."""
+    return _normal(logs, math.log(median), deviation)
 
 
 def shared_of(
@@ -77,9 +84,9 @@ def log_posterior(
     held = shared[sane]
     if not len(held):
         return total
-    density = _half_normal(held[:, 1], LEVEL_SPREAD) + _half_normal(held[:, 2], RUN_SCATTER)
+    density = _log_normal(held[:, 1], *LEVEL_SPREAD) + _half_normal(held[:, 2], RUN_SCATTER)
     if law.grows:
-        density += _normal(held[:, 3], *RATE_PRIOR) + _half_normal(held[:, 4], RATE_SPREAD)
+        density += _normal(held[:, 3], *RATE_PRIOR) + _log_normal(held[:, 4], *RATE_SPREAD)
     for i, (_, mean, deviation) in enumerate(law.shapes, 5):
         density += _normal(held[:, i], mean, deviation)
     total[sane] = density + jacobian[sane] + likelihood(law, points, held, start)

@@ -112,17 +112,31 @@ def points_of(
 
 
 def falls(points: Points) -> bool:
-    """Whether straight lines through the specimens, with one slope, fall by three standard errors."""
-    number = points.given.sum(axis=1, keepdims=True)
+    """Whether straight lines through the specimens, with one slope, fall by three standard errors.
+
+    Those through the later half of the ages of each must fall too: what has run in may grow again.
+    """
+    later = points.given & (
+        points.age >= 0.5 * points.age.max(axis=1, where=points.given, initial=0.0)[:, None]
+    )
+    slope, error = _slope(points, points.given)
+    return slope < -_FALLS * error and _slope(points, later)[0] <= 0.0
+
+
+def _slope(points: Points, given: BoolArray) -> tuple[float, float]:
+    """Common slope of straight lines through the values given of each specimen, and its standard error."""
+    number = given.sum(axis=1, keepdims=True)
     age, value = (
-        (each - (each * points.given).sum(axis=1, keepdims=True) / number) * points.given
+        (each - (each * given).sum(axis=1, keepdims=True) / np.maximum(number, 1)) * given
         for each in (points.age, points.value)
     )
-    square = (age**2).sum()
-    slope = (age * value).sum() / square
-    left = ((value - slope * age) ** 2 * points.given).sum() / max(number.sum() - len(number) - 1, 1)
-    least = (points.variance * points.given).sum() / number.sum()
-    return bool(slope < -_FALLS * math.sqrt(max(left, least) / square))
+    square = float((age**2).sum())
+    if square <= 0.0:
+        return 0.0, math.inf
+    slope = float((age * value).sum() / square)
+    left = ((value - slope * age) ** 2 * given).sum() / max(number.sum() - len(number) - 1, 1)
+    least = (points.variance * given).sum() / number.sum()
+    return slope, math.sqrt(max(float(left), float(least)) / square)
 
 
 def warnings_of(points: Points) -> tuple[Warning, ...]:
@@ -158,7 +172,7 @@ def warnings_of(points: Points) -> tuple[Warning, ...]:
         warnings.append(
             Warning(
                 "values fall",
-                "values fall with age, but every growth law rises",
+                "values fall with age up to the last runs, but every growth law rises in the end",
                 remedy="give the reciprocal of the falling quantity",
                 severity="act",
             )

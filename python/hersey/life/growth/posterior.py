@@ -53,7 +53,8 @@ def posterior(peak: Peak, points: Points, random: np.random.Generator) -> Poster
 def parameters_of(found: Posterior, scale: tuple[float, float]) -> dict[str, Interval]:
     """Return medians and 90 % intervals of what all specimens share, in the units given."""
     shared, law = found.shared, found.law
-    named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
+    with np.errstate(over="ignore"):  # draws of no weight may be anywhere
+        named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
     if law.grows:
         per_age = 1.0 if law.name == "saturating" else scale[0]
         named["rate"] = np.exp(shared[:, 3]) / per_age

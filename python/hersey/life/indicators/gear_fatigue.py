@@ -195,8 +195,8 @@ class _GearLoad:
 
     def _rate_of_sticking(self, curves: Curves, place: int, speed: float) -> float:
         """Damage per second of a run that sticks at a speed (m/s); NaN where its motion is not found."""
-        train = self.machine.train
         try:
+            train = self.machine.train
             drag = drag_of(self.estimates, curves, place, self.machine)
             if drag is None:
                 return np.nan  # no transition above its stick speed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -61,7 +62,7 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
     slow_from = fast_from = "slowest and fastest recorded by all specimens"
     if machine.life.coldest is not None and coldest is not None:
         coldest, cold_from = machine.life.coldest, "[life] coldest"
-    if machine.limits.speed is not None:
+    if machine.limits.speed is not None and not math.isinf(machine.roll_radius):
         fastest, fast_from = machine.limits.speed / machine.roll_radius, "[limits] speed"
     if machine.points:
         speeds = [point.speed / machine.roll_radius for point in machine.points]

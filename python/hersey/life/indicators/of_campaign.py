@@ -6,6 +6,7 @@ its first warning names, and its error grows where the dwells do not enclose tha
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,8 @@ _DEVIATIONS = 1.96
 #: Places of the states: the load cases, rest, and from there on the points.
 _COLD, _SLOW, _STILL, _POINTS = 0, 1, 2, slice(3, None)
 
+#: Keys of [drivetrain].
+_MOVING = "stiffness, mass, roll_radius and stick_speed"
 #: Indicators, and why there are none.
 _Found = tuple[list[Indicator], list[Warning]]
 
@@ -57,9 +60,10 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
             f"{campaign.path.name} has no run with dwells. Add logs with 'hersey campaign add'"
         )
     hottest = ends[_SLOW].temperature
-    still = State(
-        "at rest, hot", stick_speed_at(machine, hottest) / machine.roll_radius, hottest, "stick speed"
-    )
+    stick_speed = ends[_SLOW].speed
+    if machine.has_drivetrain:
+        stick_speed = stick_speed_at(machine, hottest) / machine.roll_radius
+    still = State("at rest, hot", stick_speed, hottest, "stick speed")
     states = (*ends, still, *point_states(machine))
     temperatures = tuple(dict.fromkeys(point.temperature for point in machine.points))
     estimates = at_states(runs, states, temperatures, drawn=DRAWN_RUNS)
@@ -145,6 +149,8 @@ class _Asked:
                 if value is None
             ]
             return [], [_lacks("grip", "limits", " and ".join(lacks))]
+        if math.isinf(self.machine.roll_radius):
+            return [], [_lacks("grip", "drivetrain", _MOVING)]
         estimates, limit = self.estimates, grip * self.machine.roll_radius
         warnings = []
         if any(rest is None for rest in estimates.runs.rests):
@@ -157,15 +163,15 @@ class _Asked:
                 )
             )
         cold = estimates.belt[:, _COLD], estimates.belt_error[:, _COLD]
+        sliding = self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *warnings)
+        if not self.machine.has_drivetrain:
+            return [sliding], [_lacks("grip, from rest", "drivetrain", _MOVING)]
         breakaway, how = self._breakaway()
         error = estimates.belt_error[:, _STILL]
         from_rest = self._torque("grip, from rest", "grip", limit, breakaway, error, _STILL, how, *warnings)
         # Nobody measured the factor of Eq. 29: it warns, and ends no specimen.
         by_rule = static_force(self.machine) is None
-        return [
-            self._torque("grip, cold and fast", "grip", limit, *cold, _COLD, *warnings),
-            replace(from_rest, sign=by_rule),
-        ], []
+        return [sliding, replace(from_rest, sign=by_rule)], []
 
     def _breakaway(self) -> tuple[FloatArray, Warning]:
         """Torque at which a belt at rest breaks away, and how it is estimated."""
@@ -193,16 +199,25 @@ class _Asked:
 
     def stick_slip(self, *, signs: bool) -> _Found:
         if not self.machine.points:
-            return [], [_lacks_points("stick-slip at a used operating point")]
+            return [], [self._lacks_points("stick-slip at a used operating point")]
+        if not self.machine.has_drivetrain:
+            lacks = [_lacks("stick-slip from rest", "drivetrain", _MOVING)] if signs else []
+            return transitions(self.estimates, self.machine), lacks
         early, warnings = folds(self.estimates, self.machine) if signs else ([], [])
         return [*transitions(self.estimates, self.machine), *early], warnings
+
+    def _lacks_points(self, mode: str, *, share: bool = False) -> Warning:
+        """A failure mode that is not judged without operating points, or without the radius they need."""
+        if math.isinf(self.machine.roll_radius):
+            return _lacks(mode, "drivetrain", _MOVING)
+        return _without_points(mode, share=share)
 
     def continuous_torque(self) -> _Found:
         limit = self.machine.life.continuous_torque
         if limit is None:
             return [], [_lacks("heating of the motor", "life", 'continuous_torque = "0.5 N*m"')]
         if not self.machine.points:
-            return [], [_lacks_points("heating of the motor", share=True)]
+            return [], [self._lacks_points("heating of the motor", share=True)]
         squares = self.estimates.drive[:, _POINTS] ** 2 * shares_of(self.machine)
         return [self._over_points("continuous torque", "motor heat", "N m", limit, squares, 0.5)], []
 
@@ -212,7 +227,7 @@ class _Asked:
             return [], [_lacks(f"energy per {unit}", "life", 'energy = "10 J"')]
         time = running_time(self.machine, self.estimates.runs.runs.age_unit)
         if not self.machine.points:
-            return [], [_lacks_points(f"energy per {unit}", share=time is not None)]
+            return [], [self._lacks_points(f"energy per {unit}", share=time is not None)]
         if time is None:
             return [], [_lacks(f"energy per {unit}", "life", 'travel = "300 mm"')]
         speeds = np.array([state.speed for state in self.estimates.states[_POINTS]])
@@ -248,7 +263,7 @@ def _lacks(mode: str, table: str, keys: str) -> Warning:
     )
 
 
-def _lacks_points(mode: str, *, share: bool = False) -> Warning:
+def _without_points(mode: str, *, share: bool = False) -> Warning:
     """A failure mode that is not judged without operating points."""
     return Warning(
         NOT_JUDGED,

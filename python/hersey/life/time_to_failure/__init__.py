@@ -6,6 +6,7 @@ joined    draws of several failure modes side by side
 first     `SpecimenEnd`: which way comes first, and when
 attention which specimens need attention, and when to look at the others
 next_run  what to measure next, and how far it would help to decide
+ageing    whether anything ages, and before which age none can fail
 unsure    what is not known of the ends, and what depends on priors
 estimate  `time_to_failure`: the first end of each specimen, and of the population
 ========  ====================================================================

@@ -53,7 +53,6 @@ _ADVISED = 3
 _SHOWN = 24
 #: Failure modes of one reason that an error names.
 _NAMED = 2
-NEVER = "none"
 
 
 @dataclass(frozen=True)
@@ -179,11 +178,8 @@ class TimeToFailure(Result):
     @property
     def advice(self) -> tuple[str, ...]:
         """What to do next, in words: specimens to inspect, how long to go on without growth, runs."""
-        failed = [
-            f"inspect {each.unit} for {' or '.join(each.likely)}"
-            for each in self.units
-            if each.state == "failed"
-        ]
+        likely = {each.unit: " or ".join(each.likely) for each in self.units}
+        failed = [f"inspect {name} for {likely[name]}" for name in self.attention.failed]
         go_on = [self.ageing.advice(self.age_unit)]
         runs = [each.words(self.age_unit) for each in self.next_runs]
         return (*failed[:_ADVISED], *filter(None, go_on), *runs[:_ADVISED])

@@ -57,11 +57,16 @@ class SpecimenEnd(Record):
 
     @property
     def likely(self) -> tuple[str, ...]:
-        """The ways that a table names, the likeliest first: they hold 80 % of the probability of any."""
+        """The ways that a table names, the likeliest first: they hold 80 % of the probability of any.
+
+        None if the specimen is not expected to fail.
+        """
+        if math.isinf(self.age.age.value):
+            return ()
         order = sorted(self.first, key=lambda name: -self.first[name])
         total, found, names = sum(self.first.values()), 0.0, []
         for name in order:
-            if found >= LIKELY * total or (math.isinf(self.age.age.value) and self.first[name] < MENTIONED):
+            if found >= LIKELY * total:
                 break
             names.append(name)
             found += self.first[name]

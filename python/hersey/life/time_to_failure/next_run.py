@@ -147,6 +147,7 @@ def next_runs(
         before, after = _wrong(events[i]), wrong_after(events[i], values, errors, among, random)
         best = _chosen(before, after)
         if best is not None:
+            mode = max(units[i].first, key=lambda name: units[i].first[name])
             age, risk = float(ages[best]), float(after[best])
-            found.append(NextRun(name, age, goals[i], goals[i] == last, units[i].likely[0], before, risk))
+            found.append(NextRun(name, age, goals[i], goals[i] == last, mode, before, risk))
     return sorted(found, key=lambda each: each.after - each.before)

@@ -86,7 +86,7 @@ async function main() {
   const warnings = data.warnings.map(warned), shown = warnings.slice(0, data.shown_warnings);
   if (warnings.length) {
     const box = add(report, "div", "", "warnings");
-    list(box, shown);
+    checks(box, data.warnings.slice(0, shown.length).map((each) => [each.severity, warned(each)]));
     if (warnings.length > shown.length) list(fold(box, `${warnings.length - shown.length} more ${warnings.length - shown.length === 1 ? "warning" : "warnings"}`), warnings.slice(shown.length));
   }
   const [ends, ...others] = data.sections;

@@ -1,0 +1,50 @@
+"""The dwells of all runs of a campaign, as a table or as numbers."""
+
+from __future__ import annotations
+
+import sqlite3
+
+import numpy as np
+import polars as pl
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.life.campaign.entry import COLUMNS
+
+#: Dwells that are read at once.
+_AT_ONCE = 100_000
+_KINDS = {"INTEGER": pl.Int64, "REAL": pl.Float64, "TEXT": pl.String}
+
+
+def dwells_of(database: sqlite3.Connection) -> pl.DataFrame:
+    """Return one row per dwell, in SI, by specimen, age and run: ``run_id`` and what is kept of a dwell."""
+    columns = ", ".join(f'd."{name}"' for name in COLUMNS)
+    rows = database.execute(
+        f"SELECT r.id, {columns} FROM runs r JOIN dwells d ON d.run_id = r.id "
+        "ORDER BY r.unit, r.age, r.id, d.number"
+    )
+    schema = {"run_id": pl.Int64()} | {name: _KINDS[kind]() for name, kind in COLUMNS.items()}
+    parts = [pl.DataFrame(schema=schema)]
+    while some := rows.fetchmany(_AT_ONCE):
+        parts.append(pl.DataFrame(some, schema=schema, orient="row"))
+    return pl.concat(parts)
+
+
+def with_units(dwells: pl.DataFrame, age_unit: str) -> pl.DataFrame:
+    """Return dwells whose columns name their units."""
+    units = {"start": "s", "end": "s", "load": "N", "tare": "N m", "rest": "N m"}
+    for name, si in (("speed", "rad/s"), ("torque", "N m"), ("temperature", "K")):
+        units |= {name: si, f"{name}_error": si}
+    new = {name: f"{name.replace('_', ' ')} ({si})" for name, si in units.items()}
+    return dwells.rename({**new, "age": f"age ({age_unit or 'unit'})"})
+
+
+def measured_of(database: sqlite3.Connection) -> tuple[IntArray, FloatArray]:
+    """Return the numbers of every dwell, as `Campaign.measured`."""
+    rows = database.execute(
+        "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
+    )
+    parts = [np.empty((0, 5))]
+    while some := rows.fetchmany(_AT_ONCE):
+        parts.append(np.array(some, dtype=float))
+    numbers = np.concatenate(parts)
+    return numbers[:, 0].astype(np.intp), numbers[:, 1:]
