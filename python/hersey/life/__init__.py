@@ -5,6 +5,7 @@ age              an age with its specimen: pages, hours, cycles
 campaign         the file of a life test: specimens, ages, their steady points and fits
 indicator        one failure mode: a number of each run against a limit
 indicators       from the runs of a campaign to each failure mode
+diagnostics      which runs do not fit the others, and the likeliest slip behind each
 fatigue          cycles of torque counted, and the damage that they do to a part
 failures         failures and suspensions typed in: their law, remaining life, a fleet, the next test
 population       ages at failure over many specimens: Weibull law, B10 and B50

@@ -13,6 +13,7 @@ nothing.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import optimize, special
@@ -172,7 +173,9 @@ class LeftOut:
 
 def left_out(left: FloatArray, rows: Rows, spreads: Spreads) -> LeftOut:
     """Return it for numbers less their mean, ``left``."""
-    precision = np.linalg.inv(spreads.covariance(rows.age, rows.variance, rows.given))
+    precision = np.asarray(
+        np.linalg.inv(spreads.covariance(rows.age, rows.variance, rows.given)), dtype=float
+    )
     pulled = (precision @ np.moveaxis(left, -1, -2)[..., None])[..., 0]
     own = np.diagonal(precision, axis1=-2, axis2=-1)
     return LeftOut(np.moveaxis(pulled / own, -1, -2), np.moveaxis(1.0 / own, -1, -2), precision)
@@ -226,6 +229,6 @@ def _spreads_of_term(rows: Rows, left: FloatArray, some: IntArray, term: int) ->
         return float(-logs[given].sum() + 0.5 * np.sum(((numbers - start) / _KNOWN) ** 2))
 
     simplex = np.vstack([start, start + np.diag([0.7, -1.0, -1.0, -0.7])])
-    options = {"maxfev": 160, "xatol": 0.05, "fatol": 0.05, "initial_simplex": simplex}
+    options: Any = {"maxfev": 160, "xatol": 0.05, "fatol": 0.05, "initial_simplex": simplex}
     found = optimize.minimize(misfit, start, method="Nelder-Mead", options=options)
     return np.asarray(found.x)
