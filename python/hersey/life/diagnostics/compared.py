@@ -63,7 +63,7 @@ class Compared:
     @property
     def terms(self) -> int:
         """How many numbers a run has."""
-        return self.rows.value.shape[-1]
+        return int(self.rows.value.shape[-1])
 
     @cached_property
     def left(self) -> FloatArray:

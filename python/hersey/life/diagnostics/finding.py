@@ -139,11 +139,11 @@ def find_slips(runs: MeasuredRuns) -> list[Slip]:
     for slip in found:
         state = state.without(slip)
     while len(found) < _MOST and state.places.size:
-        slip = _likeliest(state)
-        if slip is None:
+        likeliest = _likeliest(state)
+        if likeliest is None:
             break
-        found.append(slip)
-        state = state.without(slip)
+        found.append(likeliest)
+        state = state.without(likeliest)
     return found
 
 

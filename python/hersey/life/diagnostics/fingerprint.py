@@ -96,10 +96,10 @@ def _shared(terms: FloatArray, value: FloatArray, place: IntArray, count: int) -
     slopes = np.zeros(terms.shape[1])
     for _ in range(4):
         root = np.sqrt(weight[place])
-        slopes = np.linalg.lstsq(inside * root[:, None], about * root, rcond=1e-6)[0]
+        slopes[:] = np.linalg.lstsq(inside * root[:, None], about * root, rcond=1e-6)[0]
         size = np.sqrt(np.bincount(place, (about - inside @ slopes) ** 2, count) / number)
         usual = float(np.median(size[number > 1]))
-        weight = 1.0 / np.maximum(1.0, size / max(usual, 1e-9)) ** 2
+        weight = np.ones(count) / np.maximum(1.0, size / max(usual, 1e-9)) ** 2
     return np.asarray(terms @ slopes)
 
 

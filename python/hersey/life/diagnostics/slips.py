@@ -14,7 +14,7 @@ from scipy import stats
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.life.diagnostics.compared import Compared
-from hersey.life.diagnostics.trends import left_out
+from hersey.life.diagnostics.trends import Rows, left_out
 
 #: Kinds of slips: what was done, in two or three words.
 EXCHANGED = "logs exchanged"
@@ -85,7 +85,7 @@ def alone(at: Compared) -> list[Slip]:
         square = ((at.off - amount @ directions.T) ** 2 * inverse).sum(axis=1)
         cost = 0.5 * ((amount / deviations) ** 2).sum(axis=1)
         cost += 0.5 * (np.linalg.slogdet(inner)[1] + 2.0 * np.log(deviations).sum())
-        return at.density(square, logs) - cost - at.logs, amount
+        return at.density(square, logs) - cost - at.logs, np.asarray(amount, dtype=float)
 
     machine, level = moved(at.whiten[:, :1], np.array([_LEVEL]))
     deviations = np.array([_LEVEL, *_SHAPES])[: at.terms]
@@ -131,7 +131,7 @@ def exchanged(at: Compared, near: float) -> list[Slip]:
     gain = as_if(second, first) + as_if(first, second) - at.logs[first] - at.logs[second]
     gain -= np.where(apart <= 1e-9, 0.0, np.where(order[first] == order[second], 1.0, 3.0))
     return [
-        Slip(EXCHANGED, pair, g)
+        Slip(EXCHANGED, tuple(pair), g)
         for *pair, g in zip(first.tolist(), second.tolist(), gain.tolist(), strict=True)
     ]
 
@@ -257,7 +257,7 @@ def age_scaled(at: Compared) -> list[Slip]:
     return found
 
 
-def _within(age: FloatArray, others: FloatArray, rows: object, row: int) -> FloatArray:
+def _within(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatArray:
     """What the schedule says of an age: whether others have it, and where it lies among its own."""
     everywhere = {
         float(f"{a:.6g}")
