@@ -19,7 +19,7 @@ from website.navigation import DOCS
 
 WORDS: dict[str, Any] = tomllib.loads((ROOT / "tests" / "website" / "words.toml").read_text(encoding="utf-8"))
 MOST_ENTRIES = 30
-MOST_WORDS = 32_000
+MOST_WORDS = 32_300
 
 
 def explained() -> set[str]:

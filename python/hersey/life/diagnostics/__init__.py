@@ -8,6 +8,7 @@ compared     every run against that: distances and log densities
 slips        how much better each slip explains the runs
 finding      the likeliest slips, each undone before the next is looked for
 same_logs    runs that hold the same torques
+said         the warning of each slip
 diagnosis    what was found: warnings, and the runs that growth does without
 ===========  ============================================================================
 """

@@ -259,7 +259,7 @@ def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: floa
 
 
 def _nominal(point: Flooded) -> float:
-    """Logarithm of the flooded film at a point by the machine's file, m."""
+    """Logarithm of the flooded film at a point by the machine file, m."""
     return float(cubic(point.film, np.zeros(()))[0].item())
 
 
