@@ -243,9 +243,9 @@ def test_more_drag_beside_the_film_means_that_specimens_starve_sooner() -> None:
     assert told.values["direction"] == "sooner"
     assert (told.values["least"], told.values["most"]) == (0.05, 0.4)
     assert "With more such drag specimens starve sooner" in told.sentence
-    assert "log one specimen flooded with fresh lubricant" in told.sentence
+    assert "log a specimen flooded with fresh lubricant" in told.sentence
     assert told in film.with_starvation(Indicators(film.runs, ())).each[0].warnings
-    assert f"{drag.starves[0].shown} at 5%" in film.summary()
+    assert f"{drag.starves[0].shown} pages at 5%" in film.summary()
     assert film.to_dict()["other_drag"]["starves"][3]["median"] == ages[3]
 
 

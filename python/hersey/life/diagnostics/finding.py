@@ -197,4 +197,8 @@ def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
     inside = 0 < column < np.count_nonzero(before.rows.given[row]) - 1
     times = float(at.squares[place] / others) / (_INSIDE if inside else _AT_END)
     gain = 0.5 * (best.gain + first[best.kind].gain)
-    return replace(best, runs=(there,), gain=max(gain, float(LEAST[best.kind] + 2.0 * np.log(times))))
+    return replace(
+        best,
+        runs=(there,),
+        gain=max(gain, float(LEAST[best.kind] + 2.0 * np.log(max(times, np.finfo(float).tiny)))),
+    )

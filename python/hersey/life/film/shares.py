@@ -57,11 +57,11 @@ class OtherDrag(Record):
 
     def lines(self, unit: str, point: str) -> list[str]:
         """Return the share and what the ages would be at others, as lines of text."""
-        ages = ", ".join(f"{each.shown} at {each.share:.0%}" for each in self.starves)
+        ages = ", ".join(f"{each.shown} {unit} at {each.share:.0%}" for each in self.starves)
         return [
             f"share of the drag at {point} that does not follow the film (rolling, seals, gears), flooded: "
             f"{self.share:.0%} [{self.low:.0%}, {self.high:.0%}]; rolling as computed {self.computed:.0%}",
-            f"age ({unit}) at which the median specimen starves, by that share: {ages}",
+            f"age at which the median specimen starves, by that share: {ages}",
         ]
 
     @property

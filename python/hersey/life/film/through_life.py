@@ -339,7 +339,7 @@ def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
         "other drag",
         "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
         "With more such drag specimens starve {direction}: the median one at {few} {age_unit} if it is "
-        "{least:.0f %}, at {many} {age_unit} if it is {most:.0f %}. To determine it, log one specimen flooded "
+        "{least:.0f %}, at {many} {age_unit} if it is {most:.0f %}. To determine it, log a specimen flooded "
         "with fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
         severity="note" if other.determined else "watch",
         low=other.low,
