@@ -19,7 +19,7 @@ import polars as pl
 import hersey
 from benchmarks.motion import DRAG, TRAIN
 from hersey.damping.candidates.candidate import all_candidates
-from hersey.life.population import weibull
+from hersey.life.failures.estimate import weibull
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 GROUPS = ("rows", "dwells", "candidates", "draws", "specimens", "sets")

@@ -24,7 +24,6 @@ from hersey.damping.no_load_torque import NoLoadTorque
 from hersey.document.parts.cycles import CyclesPart
 from hersey.document.parts.drift import DriftPart
 from hersey.document.parts.fit import FitPart
-from hersey.document.parts.life import PopulationPart
 from hersey.document.parts.life_test import LifeTestPart
 from hersey.document.parts.log import LogPart, PointsPart
 from hersey.document.parts.models import ModelsPart
@@ -35,7 +34,6 @@ from hersey.document.parts.study import StudyPart
 from hersey.errors import MissingFileError
 from hersey.identification.identified_drive import IdentifiedDrive
 from hersey.inspection.inspecting import Inspection
-from hersey.life.population import weibull as population
 from hersey.motion.trajectory import Trajectory
 from hersey.result import LINE, Result, json_value, table_of
 from hersey.schema.record import part_of
@@ -198,10 +196,6 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "OtherUses": (test_other_uses.by_hand, hersey.OtherUses),
     "AgeingMaps": (test_ageing_maps.maps, hersey.AgeingMaps),
     "LifeTest": (lambda: shipped.followed(2), LifeTestPart),
-    "Population": (
-        lambda: population([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
-        PopulationPart,
-    ),
     "FailureLaw": (failures, hersey.FailureLaw),
     "RemainingLife": (lambda: hersey.remaining_life(failures(), 5.0), hersey.RemainingLife),
     "FleetForecast": (lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0), hersey.FleetForecast),

@@ -40,6 +40,7 @@ from .life.failures.forecast import RemainingLife as RemainingLife
 from .life.failures.forecast import fleet_forecast as fleet_forecast
 from .life.failures.forecast import remaining_life as remaining_life
 from .life.failures.law import FailureLaw as FailureLaw
+from .life.failures.records import BLife as BLife
 from .life.failures.sample import Failures as Failures
 from .life.failures.table import read_failures as read_failures
 from .life.failures.test_plan import LifeTestPlan as LifeTestPlan
@@ -64,8 +65,6 @@ from .life.indicator import Runs as Runs
 from .life.indicators.of_campaign import indicators_of as indicators_of
 from .life.other_uses import OtherUses as OtherUses
 from .life.other_uses import other_uses as other_uses
-from .life.population import BLife as BLife
-from .life.population import Population as Population
 from .life.time_to_failure.estimate import TimeToFailure as TimeToFailure
 from .life.time_to_failure.estimate import time_to_failure as time_to_failure
 from .life.trend.fit import trend as trend

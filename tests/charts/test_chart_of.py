@@ -23,7 +23,6 @@ from hersey.charts import CHARTS, chart_of
 from hersey.charts.render import picture
 from hersey.damping.candidates.observations import Observations
 from hersey.errors import ParameterError
-from hersey.life.population import weibull as population
 from hersey.machine.machine import read_machine
 from hersey.motion.drag import Drag as AnyDrag
 from tests import test_results
@@ -181,7 +180,6 @@ MADE: dict[str, Callable[[], Any]] = {
     "RemainingLife": lambda: hersey.remaining_life(failures(), 5.0),
     "FleetForecast": lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0),
     "LifeTestPlan": lambda: hersey.life_test_plan(3.0, shape=2.0, unit="h"),
-    "Population": lambda: population([4.0, 6.0, 7.0, 9.0], [True, True, False, True], unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
     "FilmLife": lambda: shipped.film(1),
     "Growth": lambda: test_results.growth(),
@@ -467,18 +465,6 @@ def test_the_film_of_a_unit_stands_over_its_layer() -> None:
     assert layer[0]["value"] > layer[0]["need"]
 
 
-def test_failures_stand_at_their_ranks_and_other_units_on_the_axis() -> None:
-    law = result_of("Population")
-    band, line, points, ticks = layers("Population")
-    assert "Age (h)" in titles(specification("Population"))
-    assert [row["age"] for row in points] == [4.0, 6.0, 9.0]
-    assert [row["share"] for row in points] == pytest.approx(100 * law.median_ranks[1])
-    assert [row["age"] for row in ticks] == [7.0]
-    at = [np.log(law.scale) + row["place"] / law.shape for row in line]
-    assert np.log([row["age"] for row in line]) == pytest.approx(at)
-    assert all(row["low"] < row["age"] < row["high"] for row in band)
-
-
 def test_a_probability_plot_shows_modes_law_band_points_and_suspensions() -> None:
     modes, band, line, points, ticks = layers("FailureLaw")
     law = failures()
@@ -489,9 +475,9 @@ def test_a_probability_plot_shows_modes_law_band_points_and_suspensions() -> Non
     assert [row["age"] for row in ticks] == [7.0]
 
 
-def test_a_population_without_a_law_still_shows_its_units() -> None:
+def test_failures_without_a_law_still_show_their_specimens() -> None:
     for failed in ([False, False], [True, False], [True, True]):
-        law = population([10.0, 10.0], failed)
+        law = hersey.weibull([10.0, 10.0], failed)
         shown = chart_of(law).to_dict(validate=False)
         alt.Chart.from_dict(valid(shown), validate=True)
         assert law.warnings[0].sentence in shown["title"]["subtitle"]

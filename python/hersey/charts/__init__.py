@@ -29,7 +29,7 @@ hysteresis       what the belt does at which drive speed
 operating_map    the operating map
 plan             a drive profile and the motion
 warm_up          speed, drag and temperatures of a warm-up
-weibull          share failed against age
+weibull          axes that make a Weibull law a straight line
 life_failures    specimens of a life test as intervals, on the axes of a Weibull plot
 failures         share failed against age, of failures typed in; remaining life, fleet, test plan
 ageing_maps      the operating map of a unit when new, now and at its end
@@ -81,7 +81,6 @@ CHARTS = {
     "OperatingMap": ("operating_map", "map_chart"),
     "Plan": ("plan", "plan_chart"),
     "WarmUp": ("warm_up", "warm_up_chart"),
-    "Population": ("weibull", "weibull_chart"),
     "FailureLaw": ("failures", "law_chart"),
     "RemainingLife": ("failures", "remaining_chart"),
     "FleetForecast": ("failures", "fleet_chart"),

@@ -8,7 +8,6 @@ indicators       from the runs of a campaign to each failure mode
 diagnostics      which runs do not fit the others, and the likeliest slip behind each
 fatigue          cycles of torque counted, and the damage that they do to a part
 failures         failures and suspensions typed in: their law, remaining life, a fleet, the next test
-population       ages at failure over many specimens: Weibull law, B10 and B50
 growth           how indicators grow, and the ages at their limits
 drift            what moved with age, and what it points to
 maintenance      what was done to a specimen, and the stretches of its life between

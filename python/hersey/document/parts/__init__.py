@@ -12,7 +12,6 @@ exchange         a unit for other tools
 glossary         terms with their meanings
 posterior        what dwells, starts and stick-slip say together
 study            what a log and its machine tell together
-life             ages at failure
 drift            what moved with age
 life_test        a life test followed: all of these
 ===============  ===============================================

@@ -18,11 +18,10 @@ from hersey.life.failures.draws import draws_of
 from hersey.life.failures.fit import Fit, age_held, effect_held, fitted, shape_held
 from hersey.life.failures.goodness import goodness_of_fit
 from hersey.life.failures.law import SHOWN, FailureLaw
-from hersey.life.failures.records import LawComparison, LawParameter, ModeLaw
+from hersey.life.failures.records import BLife, LawComparison, LawParameter, ModeLaw
 from hersey.life.failures.sample import Failures
 from hersey.life.failures.table import read_failures
 from hersey.life.failures.warnings import few_failures, law_warnings, no_law, stress_warnings, unknown_modes
-from hersey.life.population import BLife
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 

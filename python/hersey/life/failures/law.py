@@ -17,9 +17,16 @@ from hersey.life.failures.draws import Draws, draws_of, sum_survival, survival_a
 from hersey.life.failures.fit import Fit, age_held
 from hersey.life.failures.goodness import GoodnessOfFit
 from hersey.life.failures.positions import positions
-from hersey.life.failures.records import LawComparison, LawParameter, ModeLaw, Reliability, span, written
+from hersey.life.failures.records import (
+    BLife,
+    LawComparison,
+    LawParameter,
+    ModeLaw,
+    Reliability,
+    span,
+    written,
+)
 from hersey.life.failures.sample import Failures
-from hersey.life.population import BLife
 from hersey.result import Means, Result, table_of
 from hersey.schema.warning import Warning
 

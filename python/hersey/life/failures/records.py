@@ -7,8 +7,23 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.life.population import BLife
 from hersey.result import OPEN, Means, Record
+
+
+@dataclass(frozen=True)
+class BLife(Record):
+    """Age by which a share of all specimens has failed, with its interval."""
+
+    share: float
+    age: float
+    low: float
+    high: Annotated[float, OPEN]  #: infinite where no upper end is known
+    level: float
+
+    @property
+    def name(self) -> str:
+        """Usual name, e.g. B10."""
+        return f"B{100 * self.share:g}"
 
 
 @dataclass(frozen=True)

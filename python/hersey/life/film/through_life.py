@@ -93,14 +93,10 @@ class FilmLife(Result):
         return np.asarray(self.film[point].high < STARVED)
 
     def headline(self) -> str:
-        """Return how many specimens starve at the fastest operating point, and when half of new ones do."""
+        """Return how many specimens starve at the fastest operating point."""
         last = _last_runs(self.runs)
         starved = [self.runs.unit[i] for i in last if self.starved()[i]]
-        text = f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
-        b50 = self.starves[0].b50
-        if b50 is None:
-            return text
-        return f"{text}; half of new specimens starve by {b50.age} {self.runs.age_unit}"
+        return f"{len(starved)} of {len(last)} specimens starve of oil at {self.points[0].name}"
 
     def summary(self) -> str:
         """Return film, layer and ages of each specimen as text."""
