@@ -154,6 +154,17 @@ def test_an_activation_energy_is_found_again() -> None:
     assert law.b_lives[1].age == pytest.approx(ratio * at_350.b_lives[1].age, rel=1e-7)
 
 
+def test_failure_modes_at_several_stresses_are_one_law_with_a_warning() -> None:
+    kelvin = np.repeat([330.0, 350.0], 6)
+    ages = np.concatenate([np.arange(60.0, 120.0, 10.0), np.arange(30.0, 60.0, 5.0)])
+    modes = ("wear", "seizure") * 6
+    sample = hersey.Failures(ages, ages, np.ones(12, dtype=int), "h", modes, kelvin, "K", "arrhenius", 300.0)
+    law = hersey.weibull(sample)
+    assert law.modes == ()
+    (told,) = [each for each in law.warnings if each.kind == "failure modes under stress"]
+    assert set(told.values["modes"].split(", ")) == {"wear", "seizure"}
+
+
 @pytest.mark.parametrize("name", DISTRIBUTIONS)
 def test_laws_agree_with_scipy(name: str) -> None:
     law, k = DISTRIBUTIONS[name], np.array(1.7)

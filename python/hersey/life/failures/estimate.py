@@ -21,7 +21,14 @@ from hersey.life.failures.law import SHOWN, FailureLaw
 from hersey.life.failures.records import BLife, LawComparison, LawParameter, ModeLaw
 from hersey.life.failures.sample import Failures
 from hersey.life.failures.table import read_failures
-from hersey.life.failures.warnings import few_failures, law_warnings, no_law, stress_warnings, unknown_modes
+from hersey.life.failures.warnings import (
+    few_failures,
+    law_warnings,
+    modes_under_stress,
+    no_law,
+    stress_warnings,
+    unknown_modes,
+)
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
 
@@ -179,8 +186,10 @@ def _fits(
         return (), (no_law(sample),)
     few = few_failures(sample) if shape is None else ()
     modes = sample.modes
-    if len(modes) < _LEAST or covariate is not None:
+    if len(modes) < _LEAST:
         return (whole,), few
+    if covariate is not None:
+        return (whole,), (*few, modes_under_stress(modes))
     samples = [sample.of_mode(mode) for mode in modes]
     lacking = [mode for mode, own in zip(modes, samples, strict=True) if own.failures < least]
     if lacking:

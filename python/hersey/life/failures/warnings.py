@@ -63,6 +63,17 @@ def unknown_modes(modes: tuple[str, ...]) -> Warning:
     )
 
 
+def modes_under_stress(modes: tuple[str, ...]) -> Warning:
+    """Return that failure modes at several stresses are fitted as one."""
+    return Warning(
+        "failure modes under stress",
+        "one law is fitted to the failures of {modes}, although stress may act on each mode differently",
+        remedy="fit a table of one mode, in which specimens that failed otherwise are suspensions",
+        severity="watch",
+        modes=", ".join(modes),
+    )
+
+
 def law_warnings(compared: Sequence[LawComparison], law: str) -> tuple[Warning, ...]:
     """Return which other law fits clearly better."""
     own = next((each for each in compared if each.law == law), None)
