@@ -251,9 +251,11 @@ def test_far_and_wide_ends_are_said() -> None:
     """Two specimens that have hardly begun to grow: neither law nor spread nor age is known."""
     names, age = ("A",) * 4 + ("B",) * 4, np.tile([0.0, 10.0, 20.0, 30.0], 2)
     value = linear(np.array([0.002, 0.003]), age[:4])
-    found = warned(time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age)))
+    ends = time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age))
+    found = warned(ends)
     assert found["law of growth unknown"].values == {"modes": "torque"}
-    assert found["age uncertain"].values == {"specimens": "A, B", "factor": 2.0}
+    assert [(each.age.age.low <= 90.0, each.age.age.high) for each in ends.units] == [(True, math.inf)] * 2
+    assert "age uncertain" not in found  # beyond three times the age followed that goes without saying
     assert found["end far off"].values["factor"] == 3.0
     assert "beyond 3 times the age followed" in str(found["end far off"])
 

@@ -223,7 +223,7 @@ class _Ways:
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
         least = Earliest.of_first([way.earliest for way in ways])
-        b10, b50 = of_population(first, len(units), least)
+        b10, b50 = of_population(first, len(units), least, float(indicators.runs.age.max()))
         ends = tuple(UseEnd(each.unit, each.age.age, each.ways) for each in units)
         if b10 is None or b50 is None:
             return ends, None, None

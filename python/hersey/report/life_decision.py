@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from hersey.errors import sentence
-from hersey.life.growth.limit_ages import percent, rounded
-from hersey.life.time_to_failure.unsure import FAR
+from hersey.life.growth.limit_ages import FAR, percent, rounded
 
 if TYPE_CHECKING:
     from hersey.life.time_to_failure.estimate import TimeToFailure

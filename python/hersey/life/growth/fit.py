@@ -207,7 +207,8 @@ class Growth(Result):
         if self.shown or self._if_growing is None:
             return None
         ages = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates, if_growing=True)
-        return Earliest.of(OwnAges(ages[0], np.sort(ages[1], axis=1)))
+        earliest = Earliest.of(OwnAges(ages[0], np.sort(ages[1], axis=1)))
+        return earliest.within_reach(np.array(self.last_age))
 
     def drawn_ages(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False, if_growing: bool = False

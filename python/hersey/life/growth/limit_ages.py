@@ -31,6 +31,8 @@ SOONER, BEYOND, OWN_BEYOND = -0.05, 0.12, 0.12
 _SAID = 0.05
 #: Probability of having failed from which a specimen has failed, and up to which it is still running.
 FAILED, RUNNING = 0.95, 0.05
+#: Times the age followed up to which runs show an age: beyond it growth may set in or end that no run shows.
+FAR = 3.0
 #: Fewest specimens that show how specimens differ: fewer make no population.
 POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
@@ -154,22 +156,33 @@ class AgesAtLimit(Result):
 
 
 def age_at_limit(
-    name: str, ages: FloatArray, last: float = math.nan, earliest: float = math.inf
+    name: str,
+    ages: FloatArray,
+    last: float = math.nan,
+    earliest: float = math.inf,
+    followed: float | None = None,
 ) -> AgeAtLimit:
     """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages.
 
-    Where most draws do not reach it, the interval begins at ``earliest`` at the latest.
+    Where most draws do not reach it, the interval begins at ``earliest`` at the latest. An age beyond `FAR`
+    times the age ``followed`` (default: ``last``) is known to be later than that, no more.
     """
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
     age = interval(ages)
     if math.isinf(age.value):
         age = Interval(age.value, min(age.low, earliest), age.high)
+    shown = FAR * (last if followed is None else followed)
+    if age.value > shown > 0.0:
+        age = Interval(age.value, min(age.low, shown), math.inf)
     return AgeAtLimit(name, age, never, last, passed)
 
 
-def share_of_specimens(ages: FloatArray, share: float, earliest: float = math.inf) -> AgeAtLimit:
+def share_of_specimens(
+    ages: FloatArray, share: float, earliest: float = math.inf, followed: float | None = None
+) -> AgeAtLimit:
     """Age that a share of new specimens has reached, ``ages`` being sorted along the specimens."""
-    return age_at_limit(f"B{share * 100:.0f}", reached_by(ages, share), earliest=earliest)
+    name = f"B{share * 100:.0f}"
+    return age_at_limit(name, reached_by(ages, share), earliest=earliest, followed=followed)
 
 
 def reached_by(ages: FloatArray, share: float) -> FloatArray:
@@ -200,6 +213,12 @@ class Earliest:
             *(min(ages) for ages in zip(*((e.first, e.b10, e.b50) for e in each), strict=True)),
         )
 
+    def within_reach(self, last: FloatArray) -> Earliest:
+        """Return those that runs up to the ages ``last`` of the specimens show: up to `FAR` times that."""
+        most = FAR * float(last.max())
+        units = np.minimum(self.units, FAR * last)
+        return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
+
     @classmethod
     def unknown(cls, units: int) -> Earliest:
         """Return ages of which nothing is known but the draws."""
@@ -211,12 +230,14 @@ def _least(ages: FloatArray) -> FloatArray:
 
 
 def of_population(
-    ages: FloatArray, specimens: int, least: Earliest
+    ages: FloatArray, specimens: int, least: Earliest, followed: float
 ) -> tuple[AgeAtLimit, AgeAtLimit] | tuple[None, None]:
     """B10 and B50 as `share_of_specimens`, of a population that so many specimens show; None for too few."""
     if specimens < POPULATION:
         return None, None
-    return share_of_specimens(ages, 0.1, least.b10), share_of_specimens(ages, 0.5, least.b50)
+    shares = ((0.1, least.b10), (0.5, least.b50))
+    b10, b50 = (share_of_specimens(ages, share, age, followed) for share, age in shares)
+    return b10, b50
 
 
 def ages_at_limit(
@@ -241,7 +262,7 @@ def ages_at_limit(
         age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]))
         for i, (name, seen) in enumerate(last.items())
     ]
-    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least)
+    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, max(last.values()))
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 

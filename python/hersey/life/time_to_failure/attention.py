@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from hersey.errors import sentence
-from hersey.life.growth.limit_ages import Interval, rounded
+from hersey.life.growth.limit_ages import FAR, Interval, rounded
 from hersey.life.time_to_failure.first import SpecimenEnd
-from hersey.life.time_to_failure.unsure import FAR
 from hersey.result import Means, Record
 
 #: Specimens that a sentence names.

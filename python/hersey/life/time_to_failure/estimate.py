@@ -22,6 +22,7 @@ from hersey.errors import (
 )
 from hersey.life.age import Age
 from hersey.life.growth.limit_ages import (
+    FAR,
     POPULATION,
     AgeAtLimit,
     Earliest,
@@ -36,7 +37,7 @@ from hersey.life.time_to_failure.attention import Attention, attention_of, half_
 from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import NextRun, next_runs
-from hersey.life.time_to_failure.unsure import FAR, unsure
+from hersey.life.time_to_failure.unsure import unsure
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
@@ -281,7 +282,7 @@ def time_to_failure(
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
     least = Earliest.of_first([each.earliest for each in ending])
-    b10, b50 = of_population(first, len(units), least)
+    b10, b50 = of_population(first, len(units), least, greatest)
     known = len(units) >= POPULATION
     runs = next_runs(ending, units, picks, of_runs, asked, random)
     modes = tuple(each.mode for each in fitted)

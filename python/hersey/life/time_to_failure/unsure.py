@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from hersey.life.growth.limit_ages import POPULATION
+from hersey.life.growth.limit_ages import FAR, POPULATION
 from hersey.life.time_to_failure.first import SpecimenEnd
 from hersey.life.time_to_failure.way import FittedWay, listed
 from hersey.schema.warning import Warning
 
-#: Beyond so many times the age at which a specimen was last seen its end is "not soon", no more.
-FAR = 3.0
 #: An interval whose ends differ by this factor shows the order of an age, no more.
 _WIDE = 2.0
 
@@ -47,7 +45,8 @@ def _few_specimens(count: int) -> Warning:
 def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     """What holds of the ends of some specimens, which each warning names."""
     running = [each for each in units if each.state == "running" and math.isfinite(each.age.age.value)]
-    wide = [each.unit for each in running if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
+    near = [each for each in running if each.age.age.value <= FAR * each.age.last]
+    wide = [each.unit for each in near if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
         yield Warning(
             "age uncertain",

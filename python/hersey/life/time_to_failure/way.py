@@ -104,7 +104,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     if each.own_ages is None and not grows:
         drawn = _drawn_ages(each, growth, row, of_runs.begun, seed, if_growing=True)
         if_grown = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
-    earliest = Earliest.of(if_grown)
+    earliest = Earliest.of(if_grown).within_reach(np.array(list(last.values())))
     warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
