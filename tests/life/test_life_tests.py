@@ -68,7 +68,7 @@ def test_where_the_truth_is(low: float, high: float, never: float, truth: float,
 
 def test_a_mistake_is_named_by_kind_specimen_and_age() -> None:
     slip = {"kind": "swapped logs", "units": ["U1", "U2"], "ages": [5000, 5200], "factor": 1.0}
-    kind = slips.KINDS["swapped logs"]
+    (kind,) = slips.KINDS["swapped logs"]
 
     def said(**values: object) -> bool:
         return slips.named({"slip": slip, "said": {"warnings": [{"kind": kind, "values": values}]}})

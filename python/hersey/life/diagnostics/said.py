@@ -134,7 +134,7 @@ def _lubricant(values: dict[str, Any]) -> Warning:
     return Warning(
         slips.LUBRICANT,
         "torque of {unit} at {age:.10g} {age_unit} depends on speed and temperature otherwise than in its "
-        "other runs, as with another lubricant",
+        "other runs, as with another lubricant or on another machine",
         remedy="check where the log is from; if it is wrong, add the right one with {how}",
         severity="act",
         **values,

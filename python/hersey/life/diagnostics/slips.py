@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.diagnostics.compared import Compared
 from hersey.life.diagnostics.trends import Rows, left_out
 
@@ -24,7 +24,7 @@ AGE = "age scaled"
 TORQUE = "torque scaled"
 TORQUES = "torques scaled"
 MACHINE = "another machine"
-LUBRICANT = "another lubricant"
+LUBRICANT = "another lubricant or machine"
 SAME = "same log"
 #: Factors by which ages go wrong: orders of magnitude, and hours, minutes, seconds and days taken for each
 #: other.
@@ -57,9 +57,15 @@ _PAIRED, _TRIED = 300, 24
 #: Scatter of last ages of specimens, and of their levels at least, logarithms.
 _OF_LAST, _OF_LEVELS = 0.4, 0.15
 #: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how
-#: much more
-#: the range of ages says of a specimen that was seen several times.
+#: much more the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
+#: Gain per logarithm by which an age lies closer to another of its specimen than a tenth of what those of
+#: others do: nobody measures twice in so short a time.
+_CROWDED, _FAR_CLOSER = 5.0, 10.0
+#: The usual slip in the age of one run, and the gain that others lack: thousands typed as units.
+_THOUSAND, _LESS_USUAL = 1000.0, 2.0
+#: Ages closer than this, in the usual last one, are the same.
+_SAME_AGE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -233,7 +239,8 @@ def age_scaled(at: Compared) -> list[Slip]:
     rows, age = at.rows, at.rows.flat(at.rows.age)
     if len(rows.age) < 2:
         return []
-    far = np.argsort(-np.where(age > 2.0, np.inf, at.squares), kind="stable")[:_TRIED]
+    odd = (age > 2.0) | (_nearest(rows)[rows.row, rows.column] < _least_gap(rows) / _FAR_CLOSER)
+    far = np.argsort(-np.where(odd, np.inf, at.squares), kind="stable")[:_TRIED]
     found = []
     for i in far[age[far] > 0.0].tolist():
         row, column = rows.row[i], rows.column[i]
@@ -252,6 +259,7 @@ def age_scaled(at: Compared) -> list[Slip]:
         gain = at.density((off**2 / variance).sum(axis=1), np.log(variance).sum(axis=1)) - at.logs[i]
         others = np.delete(rows.age[row][rows.given[row]], column)
         gain += _within(ages[:, column], others, rows, row) - _within(age[[i]], others, rows, row)
+        gain -= np.where(np.isclose(np.abs(np.log(AGE_FACTORS)), np.log(_THOUSAND)), 0.0, _LESS_USUAL)
         best = int(gain.argmax())
         found.append(Slip(AGE, (i,), float(gain[best] - np.log(number)), AGE_FACTORS[best]))
     return found
@@ -270,7 +278,30 @@ def _within(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatA
     top = max(float(others.max(initial=0.0)), 1e-12)
     law = stats.t(4, scale=_OF_LAST)
     out = np.where(age > 1.5 * top, law.logpdf(np.log(np.maximum(age, 1e-12) / top)) - law.logpdf(0.0), 0.0)
-    return _COINCIDES * shared - 3.0 * again + out
+    return _COINCIDES * shared - 3.0 * again + out - _CROWDED * _crowding(age, others, rows, row)
+
+
+def _crowding(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatArray:
+    """How much closer to another of its specimen an age lies than a tenth of what those of others do."""
+    if not others.size:
+        return np.zeros(age.shape)
+    near = np.abs(age[:, None] - others).min(axis=1)
+    usual = _least_gap(rows, np.arange(len(rows.age)) != row)
+    return np.asarray(np.log(np.maximum(usual / (_FAR_CLOSER * np.maximum(near, _SAME_AGE)), 1.0)))
+
+
+def _nearest(rows: Rows) -> FloatArray:
+    """How near each run lies to another of its specimen that is not of the same age, (specimens, runs)."""
+    apart = np.abs(rows.age[:, :, None] - rows.age[:, None, :])
+    both = rows.given[:, :, None] & rows.given[:, None, :] & (apart > _SAME_AGE)
+    return np.asarray(np.where(both, apart, np.inf).min(axis=2))
+
+
+def _least_gap(rows: Rows, of: BoolArray | None = None) -> float:
+    """The least that runs of one specimen lie apart, the median of specimens; 0 where none has two ages."""
+    least = np.sort(_nearest(rows)[slice(None) if of is None else of].min(axis=1))
+    known = least[np.isfinite(least)]
+    return float(known[len(known) // 2]) if known.size else 0.0
 
 
 def torques_scaled(at: Compared) -> list[Slip]:
