@@ -47,6 +47,7 @@ TYPED: dict[str, tuple[list[str], float]] = {
     "trend": ([BENCH[0], "--at", "60 rpm", "--out", "t.csv", "--figure", "t.png"], 3.0),
     "compare": ([*BENCH, BENCH[0], "--json"], 2.5),
     "campaign": (["add", "life.hersey", *BENCH, "--unit", "F12", "--age", "120000 pages"], 2.0),
+    "weibull": ([str(EXAMPLES / "failures.csv"), "--out", "w.csv", "--figure", "w.png"], 2.5),
     "life": (["units.hersey", "--machine", MACHINE, "--out", "l.html", "--figures", "pictures"], 6.0),
     "design": (BENCH, 2.0),
     "cycles": ([str(EXAMPLES / "stick-slip.csv"), "--drive-speed", "20 mm/s", "--identify"], 3.0),

@@ -370,3 +370,13 @@ def test_heavy_tails_spread_evenly_in_each_column() -> None:
     even = np.clip(stats.t.ppf((np.arange(2000) + 0.5) / 2000, 4.0), -5.0, 5.0)
     np.testing.assert_allclose(np.sort(drawn, axis=0), np.tile(even[:, None], 3), rtol=1e-9, atol=1e-12)
     assert not np.array_equal(drawn[:, 0], drawn[:, 1])
+
+
+def test_of_one_specimen_the_spread_of_others_is_no_evidence() -> None:
+    """What rises and falls again by 3 %: spreads beyond all sense once made any law certain."""
+    random = np.random.default_rng(0)
+    age = np.linspace(100.0, 1800.0, 20)
+    value = 1.0 + 0.03 * np.sin(1.3 * math.pi * age / 1800.0) + 0.004 * random.standard_normal(20)
+    growth = fit_growth(["pin"] * 20, age, value, 0.005)
+    assert growth.law == "constant"
+    assert growth.effective > 100.0

@@ -50,26 +50,27 @@ def law_of(found: Blocks) -> str | None:
     return fit_growth(["pin"] * found.age.size, found.age, found.value, found.error, age_unit="s").law
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "PPS+30PTFE_100N_200RPM_30MINS_1",
-        "PPS+45PTFE_60N_200RPM_30MINS_2",
-    ],
-)
-def test_friction_that_saturates_is_called_so(name: str) -> None:
-    found = blocks(name)
+def test_friction_that_saturates_is_called_so() -> None:
+    found = blocks("PPS+30PTFE_100N_200RPM_30MINS_1")
     assert found.independent
     assert found.age.size == 60
     assert law_of(found) == "saturating"
 
 
+def test_friction_that_saturates_or_grows_ever_slower_is_called_neither() -> None:
+    """With 45 % of PTFE a power of age below 1 fits as well as saturation."""
+    found = blocks("PPS+45PTFE_60N_200RPM_30MINS_2")
+    growth = fit_growth(["pin"] * found.age.size, found.age, found.value, found.error, age_unit="s")
+    assert growth.law is None
+    assert sum(growth.weights[law] for law in ("saturating", "power", "run-in")) > 0.97
+
+
 def test_friction_that_barely_grows_is_most_like_saturating() -> None:
-    """With 15 % of PTFE: weight 0.90, at the edge of being named."""
+    """With 15 % of PTFE; weights are by the root of the evidence."""
     found = blocks("PPS+15PTFE_60N_200RPM_30MINS_1")
     weights = fit_growth(["pin"] * found.age.size, found.age, found.value, found.error, age_unit="s").weights
-    assert weights["saturating"] > 0.8
-    assert max(weight for law, weight in weights.items() if law != "saturating") < 0.1
+    assert weights["saturating"] > 0.4
+    assert max(weight for law, weight in weights.items() if law != "saturating") < 0.15
 
 
 @pytest.mark.parametrize("name", ["PPS_100N_1", "PPS_60N_2"])

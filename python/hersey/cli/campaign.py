@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -302,7 +302,8 @@ def _with_event(opened: Campaign, run: RunToAdd, added: Added) -> None:
 def _diagnosed(opened: Campaign, new: set[int]) -> None:
     """Print which of the new runs do not fit the others."""
     if new:
-        note(*(str(warning) for warning in opened.diagnose().concerning(new)))
+        with suppress(ParameterError):  # of damage to other runs, which 'check' reports
+            note(*(str(warning) for warning in opened.diagnose().concerning(new)))
 
 
 def _noted(added: Added) -> str:

@@ -6,11 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hersey.arguments.frozen import explained
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.failures.acceleration import Relation
 from hersey.life.failures.likelihood import Observed
 
 
+@explained
 @dataclass(frozen=True)
 class Failures:
     """Specimens, a row for each age: it failed after ``low`` and by ``high``, in ``unit``.

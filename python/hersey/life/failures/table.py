@@ -14,6 +14,7 @@ from hersey.errors import ChannelError, HerseyError, ParameterError, Setting, Un
 from hersey.files.tables import text_of
 from hersey.life.failures.cells import Table, above_zero, age_of, count_of, read_cells
 from hersey.life.failures.sample import Failures
+from hersey.units import takes_si
 
 _FAILED = frozenset(["failed", "failure", "fail", "f", "broken", "event", "dead"])
 _RUNNING = frozenset(
@@ -28,6 +29,7 @@ _EXAMPLE = "age [pages],status"
 _ROWS = "write failed or running in each row"
 
 
+@takes_si()
 def read_failures(path: str | Path, *, arrhenius: str = "", power: str = "", use: str = "") -> Failures:
     """Read a table of failures and suspensions, separated by commas, semicolons or tabs.
 

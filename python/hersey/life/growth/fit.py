@@ -70,7 +70,7 @@ class Growth(Result):
     """
 
     also_stated = ("law", "shown")
-    not_stated = ("_draws", "_if_growing", "_points", "_scale")
+    not_stated = ("_draws", "_if_growing", "_points", "_scale", "_selected")
 
     quantity: str
     age_unit: str
@@ -92,13 +92,13 @@ class Growth(Result):
     _if_growing: Draws | None = field(repr=False)  #: as if it grew; None where growth shows
     _points: Points = field(repr=False)
     _scale: tuple[float, float] = field(repr=False)  #: greatest age; mean logarithm of the value
+    _selected: str | None = field(repr=False)
     seed: int = 0
 
     @property
     def law(self) -> str | None:
-        """The growth law that the data select, or None if several fit."""
-        name = max(self.weights, key=lambda each: self.weights[each])
-        return name if self.weights[name] >= NAMED else None
+        """The growth law that the data select by its whole evidence, or None if several fit."""
+        return self._selected
 
     @property
     def shown(self) -> bool:
@@ -318,7 +318,8 @@ def fit_growth(
     random = np.random.default_rng(seed)
     found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
-    weights = _weights(found, np.array([before[each.law.name] for each in found]))
+    prior = np.array([before[each.law.name] for each in found])
+    weights = _weights(found, prior)
     by_law = {law.name: 0.0 for law in chosen} | {
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
@@ -344,6 +345,7 @@ def fit_growth(
         _if_growing=growing,
         _points=points,
         _scale=scale,
+        _selected=_selected(found, prior),
         seed=seed,
     )
 
@@ -361,6 +363,14 @@ def _weights(found: list[Posterior], before: FloatArray) -> FloatArray:
     coarse = COARSE * evidence[grows]
     weights[grows] = total * np.exp(coarse - special.logsumexp(coarse)) if total > 0.0 else 0.0
     return np.asarray(weights)
+
+
+def _selected(found: list[Posterior], before: FloatArray) -> str | None:
+    """The law whose evidence leaves no other; None if several fit."""
+    evidence = np.array([each.log_evidence for each in found]) + before
+    best = int(np.argmax(evidence))
+    share = float(np.exp(evidence[best] - special.logsumexp(evidence)))
+    return found[best].law.name if share >= NAMED else None
 
 
 def _as_if_growing(

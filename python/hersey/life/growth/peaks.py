@@ -16,6 +16,8 @@ from hersey.life.growth.points import Points
 RATE_PRIOR = (-0.5, 2.0)
 #: Medians of the priors of the spreads of level and rate, and standard deviations of their logarithms.
 LEVEL_SPREAD, RATE_SPREAD = (0.1, 1.2), (0.3, 0.8)
+#: Greatest logarithm of a spread: 4 and 4.6 deviations of the priors; beyond it likelihoods are not sound.
+_WIDEST = 2.5
 #: Scale of the half-normal prior of the scatter of runs.
 RUN_SCATTER = 0.1
 #: Specimens whose mode is sought before that of all.
@@ -76,9 +78,9 @@ def log_posterior(
     total = np.full(len(coordinates), -np.inf)
     near: BoolArray = np.asarray((np.abs(coordinates) < 40.0).all(axis=1))
     shared, jacobian = shared_of(law, np.where(near[:, None], coordinates, 0.0), middle, len(points.value))
-    sane = near & np.asarray((np.abs(shared[:, 1:3]) < 20.0).all(axis=1))
+    sane = near & np.asarray((np.abs(shared[:, 1:3]) < 20.0).all(axis=1)) & (shared[:, 1] < _WIDEST)
     if law.grows:
-        sane &= np.asarray((np.abs(shared[:, 3:5]) < 20.0).all(axis=1))
+        sane &= np.asarray((np.abs(shared[:, 3:5]) < 20.0).all(axis=1)) & (shared[:, 4] < _WIDEST)
     for i, (_, mean, deviation) in enumerate(law.shapes, 5):
         sane &= np.abs(shared[:, i] - mean) < 6.0 * deviation
     held = shared[sane]
