@@ -12,7 +12,6 @@ import pytest
 import hersey
 from hersey.arrays import FloatArray
 from hersey.life import other_uses as uses_module
-from hersey.life import population
 from hersey.life.growth import importance, marginal
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.marginal import likelihood
@@ -88,19 +87,3 @@ def test_modes_are_sought_for_many_draws_at_a_time(monkeypatch: pytest.MonkeyPat
     # where a stretch ends does not depend on the others
     alone = [likelihood(law, points, shared[i : i + 32], np.zeros(8)) for i in range(0, 1000, 32)]
     np.testing.assert_array_equal(np.concatenate(alone), together)
-
-
-def test_ages_of_few_draws_are_held_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    population._estimates_of_standard.cache_clear()
-    held, fitted = [], population._fitted
-
-    def counted(logs: FloatArray, *more: Any) -> Any:
-        held.append(logs.shape)
-        return fitted(logs, *more)
-
-    monkeypatch.setattr(population, "_fitted", counted)
-    population.weibull(np.random.default_rng(5).weibull(2.0, 2000), [True] * 2000)
-    own, *drawn = held
-    assert own == (1, 2000)
-    assert sum(rows for rows, _ in drawn) == population._DRAWS
-    assert max(rows * ages for rows, ages in drawn) <= population._HELD
