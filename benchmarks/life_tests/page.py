@@ -70,7 +70,8 @@ def page(rows: list[dict[str, Any]], mistakes: list[dict[str, Any]]) -> str:
     seeds = [row["seed"] for row in rows]
     parts = [
         HEAD,
-        f"{len(rows)} campaigns of seeds {min(seeds)} to {max(seeds)}, held out from all tuning but the rule for ages far ahead:",
+        f"{len(rows)} campaigns of seeds {min(seeds)} to {max(seeds)}, held out from all tuning but the rule "
+        "for ages far ahead:",
         "",
     ]
     parts += [*targets(rows), "", score.report(rows), ""]
