@@ -106,8 +106,8 @@ def of_fleet(case: tuple[float, int]) -> Row:
     now = random.uniform(0.0, 0.5 * SCALE, 400)
     hazard = (now / SCALE) ** shape - np.log(random.uniform(size=400))
     fails = int((SCALE * hazard ** (1 / shape) <= now + 0.2 * SCALE).sum())
-    told = hersey.fleet_forecast(law, now, 0.2 * SCALE)
-    return told.low[-1] > fails, told.high[-1] < fails
+    forecast = hersey.fleet_forecast(law, now, 0.2 * SCALE)
+    return forecast.low[-1] > fails, forecast.high[-1] < fails
 
 
 def of_life(case: tuple[float, int]) -> Row:
@@ -119,8 +119,8 @@ def of_life(case: tuple[float, int]) -> Row:
         return None
     now = 0.3 * SCALE
     ahead = SCALE * ((now / SCALE) ** shape - math.log(random.uniform())) ** (1 / shape) - now
-    told = hersey.remaining_life(law, now)
-    return told.earliest > ahead, told.latest < ahead
+    remaining = hersey.remaining_life(law, now)
+    return remaining.earliest > ahead, remaining.latest < ahead
 
 
 def of_stress(case: tuple[float, bool, int]) -> Row:

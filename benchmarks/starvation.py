@@ -29,7 +29,7 @@ SCALE = 1e5
 
 @dataclass(frozen=True)
 class Told:
-    """An age told: truth and interval over the age last seen; and the share that was told."""
+    """A reported age: truth and interval over the age last seen; and the share that was reported."""
 
     seed: int
     law: str

@@ -178,18 +178,18 @@ def write(seed: int, folder: Path, *, slip: bool, number: int) -> None:
     for log in folder.glob("U*.csv"):  # as after copying: their times say nothing
         os.utime(log, (1.7e9, 1.7e9))
     (folder / "machine.toml").write_text(tables.machine_file(one))
-    told = {"seed": seed, "mechanism": one.mechanism.name, "slip": asdict(made) if made else None}
-    (folder / "slip.json").write_text(json.dumps(told, indent=1) + "\n")
+    stated = {"seed": seed, "mechanism": one.mechanism.name, "slip": asdict(made) if made else None}
+    (folder / "slip.json").write_text(json.dumps(stated, indent=1) + "\n")
 
 
 def row(folder: Path) -> dict[str, Any]:
     """Return what hersey warns of, of the campaign in a folder, beside the mistake."""
     import hersey
 
-    told = json.loads((folder / "slip.json").read_text())
+    stated = json.loads((folder / "slip.json").read_text())
     with hersey.Campaign.open(product.campaign_file(folder), write=False) as campaign:
         said = campaign.check().to_dict()
-    return {**told, "said": said, "refused": product.refused(folder)}
+    return {**stated, "said": said, "refused": product.refused(folder)}
 
 
 def warnings(found: dict[str, Any]) -> list[dict[str, Any]]:

@@ -207,7 +207,7 @@ def test_evidence_counts_by_its_root_among_laws_that_grow() -> None:
         return growth_posterior.Posterior(LAW[law], np.zeros((1, 5)), np.ones(1), evidence, ZERO)
 
     found = [of("constant", 1.0), of("linear", 4.0), of("power", 0.0)]
-    constant, linear, power = growth_module._weights(found, np.zeros(3))
+    constant, linear, power = growth_module._weights(found, np.array([each.log_evidence for each in found]))
     assert linear / power == pytest.approx(math.exp(2.0))
     assert constant / (linear + power) == pytest.approx(math.exp(1.0) / (math.exp(4.0) + 1.0))
 

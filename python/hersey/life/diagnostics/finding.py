@@ -17,8 +17,8 @@ from hersey.life.diagnostics.same_logs import same_logs
 from hersey.life.diagnostics.slips import Slip
 
 #: Gain in log probability from which a slip of each kind is named: the mean of that by the trend of all runs
-#: as they
-#: are and of that by the trend with the slip undone, as a slip hides in the first and shapes the second.
+#: as they are and of that by the trend with the slip undone, as a slip hides in the first and shapes the
+#: second.
 LEAST = {
     slips.EXCHANGED: 7.5,
     slips.REORDERED: 9.0,
@@ -34,18 +34,16 @@ _WORTH = 2.0
 #: Kinds of a run from elsewhere, and how many runs, the farthest off, may be such.
 _FOREIGN, _FAR = (slips.MACHINE, slips.LUBRICANT), 2
 #: How many times farther, squared, such a run lies than those of the other specimens, or than this in each
-#: number: by
-#: its own neighbours on both sides, and at the end of a record, where a film may begin to starve.
+#: number: by its own neighbours on both sides, and at the end of a record, where a film may begin to starve.
 _INSIDE, _AT_END, _USUAL = 6.0, 12.0, 3.0
-#: How many times farther, squared, than those of other specimens the others of its specimen may lie without
-#: it.
+#: How many times farther, squared, than those of other specimens the rest of its specimen may lie without it.
 _AGREE = 1.5
 #: Slips that are looked for, at most, and those that are judged for each.
 _MOST, _JUDGED = 10, 5
 #: Fewest runs of a life test and of a specimen that are compared.
 _RUNS, _OF_SPECIMEN = 8, 3
 #: How far apart ages of exchanged logs may be, in the usual last age: half as much if not of one place in
-#: order.
+#: the order.
 _NEAR = 0.12
 
 
@@ -175,9 +173,8 @@ def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
     """The likelier of another machine and another lubricant for a run, by the trend without it.
 
     A run whose shape nothing explains is foreign all the same if it lies many times farther off, squared,
-    than
-    every run of the other specimens; but the others of its own must agree without it: a step that stays is
-    none.
+    than every run of the other specimens; but the rest of its own must agree without it: a step that stays
+    is none.
     """
     first = {each.kind: each for each in of_run}
     (place,) = of_run[0].runs

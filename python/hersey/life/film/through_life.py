@@ -237,7 +237,8 @@ def film_life(
     last = np.array([age[place == k].max() for k in range(len(names))])
     layers, other = _followed(read, SpecimensOfRuns(names, place, age, last), machine, drawing, seed)
     layers = layers.of(read.runs.units, segments.begun)
-    layers = replace(layers, last=np.array([_last_age(read.runs, name) for name in layers.names]))
+    oldest = {read.runs.unit[i]: float(read.runs.age[i]) for i in _last_runs(read.runs)}
+    layers = replace(layers, last=np.array([oldest[name] for name in layers.names]))
     warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
     return _film_life(read, layers, machine, track, other, warnings)
 
@@ -378,10 +379,6 @@ def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warn
         )
     )
     return warnings
-
-
-def _last_age(runs: Runs, name: str) -> float:
-    return float(max(age for unit, age in zip(runs.unit, runs.age, strict=True) if unit == name))
 
 
 def _last_runs(runs: Runs) -> list[int]:

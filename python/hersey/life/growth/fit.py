@@ -318,8 +318,8 @@ def fit_growth(
     random = np.random.default_rng(seed)
     found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
-    prior = np.array([before[each.law.name] for each in found])
-    weights = _weights(found, prior)
+    evidence = np.array([each.log_evidence + before[each.law.name] for each in found])
+    weights = _weights(found, evidence)
     by_law = {law.name: 0.0 for law in chosen} | {
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
@@ -345,18 +345,17 @@ def fit_growth(
         _if_growing=growing,
         _points=points,
         _scale=scale,
-        _selected=_selected(found, prior),
+        _selected=_selected(found, evidence),
         seed=seed,
     )
 
 
-def _weights(found: list[Posterior], before: FloatArray) -> FloatArray:
+def _weights(found: list[Posterior], evidence: FloatArray) -> FloatArray:
     """Weights of laws by their evidence; among those that grow, none of which is quite true, by its power.
 
     Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am.
     Stat. Assoc. 114 (2019) 1113).
     """
-    evidence = before + np.array([each.log_evidence for each in found])
     grows = np.array([each.law.grows for each in found])
     weights = np.exp(evidence - special.logsumexp(evidence))
     total = weights[grows].sum()
@@ -365,9 +364,8 @@ def _weights(found: list[Posterior], before: FloatArray) -> FloatArray:
     return np.asarray(weights)
 
 
-def _selected(found: list[Posterior], before: FloatArray) -> str | None:
+def _selected(found: list[Posterior], evidence: FloatArray) -> str | None:
     """The law whose evidence leaves no other; None if several fit."""
-    evidence = np.array([each.log_evidence for each in found]) + before
     best = int(np.argmax(evidence))
     share = float(np.exp(evidence[best] - special.logsumexp(evidence)))
     return found[best].law.name if share >= NAMED else None
