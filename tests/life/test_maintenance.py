@@ -63,6 +63,13 @@ def test_a_run_of_the_age_of_an_event_was_measured_before_it_unless_it_is_said_o
     assert found.age[17:19].tolist() == [300.0, 100.0]
 
 
+def test_after_two_events_age_counts_from_the_later() -> None:
+    found = runs(Event("F3", Age(150.0, "pages"), "cleaned"), GREASED).segments(OF_FRICTION)
+    assert found.name[14:21] == ("F3 before 150",) * 2 + ("F3 before 300",) + ("F3",) * 4
+    assert found.age[14:21].tolist() == [0.0, 100.0, 50.0, 0.0, 100.0, 200.0, 300.0]
+    assert found.begun["F3"] == 300.0
+
+
 def test_growth_begins_anew_from_a_re_greasing(monkeypatch: pytest.MonkeyPatch) -> None:
     fewer(monkeypatch)
     found = time_to_failure(Indicators(runs(GREASED), (torque(300.0),)))
