@@ -449,6 +449,24 @@ def test_a_thousand_runs_are_listed(campaign: Campaign) -> None:
     assert json.loads(json.dumps(campaign.to_dict()))["runs"][0]["unit"] == "F0"
 
 
+def test_added_runs_are_compared_with_a_part_of_many(campaign: Campaign) -> None:
+    """With their own specimen, the 20 added last, and 20 of the rest from first to last."""
+    campaign.add_entries((another(n), f"F{n:03}", Age(float(n // 100), "h")) for n in range(100))
+    (added,) = campaign.add_entries([(another(100), "F050", Age(5.0, "h"))])
+    found = campaign.diagnose([added.run]).runs
+    units = sorted(set(found.unit))
+    assert len(units) == 41
+    assert {"F000", "F050", "F079"}.union(f"F{n:03}" for n in range(80, 100)).issubset(units)
+    assert found.unit.count("F050") == 2
+    assert found.of_run.size == sum(len(another(0).dwells) for _ in range(42))
+    assert campaign.diagnose().runs.number == tuple(campaign.runs()["run"])
+
+
+def test_among_few_runs_all_are_compared(campaign: Campaign) -> None:
+    added = campaign.add_entries((another(n), f"F{n}", Age(1.0, "h")) for n in range(12))
+    assert len(campaign.diagnose([added[3].run]).runs.number) == 12
+
+
 def test_a_fit_with_a_transition_is_kept_whole(
     campaign: Campaign, points: hersey.SteadyPoints, surface: hersey.DampingSurface, bench_csv: Path
 ) -> None:

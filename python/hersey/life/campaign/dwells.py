@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Collection
 
 import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray, IntArray
+from hersey.life.campaign.content import one_of
 from hersey.life.campaign.entry import COLUMNS
 
 #: Dwells that are read at once.
@@ -38,10 +40,13 @@ def with_units(dwells: pl.DataFrame, age_unit: str) -> pl.DataFrame:
     return dwells.rename({**new, "age": f"age ({age_unit or 'unit'})"})
 
 
-def measured_of(database: sqlite3.Connection) -> tuple[IntArray, FloatArray]:
+def measured_of(
+    database: sqlite3.Connection, runs: Collection[int] | None = None
+) -> tuple[IntArray, FloatArray]:
     """Return the numbers of every dwell, as `Campaign.measured`."""
     rows = database.execute(
-        "SELECT run_id, speed, temperature, torque, torque_error FROM dwells ORDER BY run_id, number"
+        "SELECT run_id, speed, temperature, torque, torque_error FROM dwells "
+        f"WHERE {one_of('run_id', runs)} ORDER BY run_id, number"
     )
     parts = [np.empty((0, 5))]
     while some := rows.fetchmany(_AT_ONCE):

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.errors import OutputError, ParameterError, meant, way_in
+from hersey.errors import OutputError, ParameterError, way_in
 from hersey.life.age import Age
-from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
+from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there
 from hersey.life.campaign.checks import CampaignCheck, check
-from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
+from hersey.life.campaign.content import damaged, one_of, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
+from hersey.life.campaign.listing import overview, runs_of
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 from hersey.life.maintenance import Event, kind_of
 from hersey.units import takes_si
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
     from hersey.damping.surface import DampingSurface
     from hersey.life.diagnostics.diagnosis import Diagnosis
     from hersey.log.sensors import Sensors
-
-#: Columns of the list of runs.
-_LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
-#: Specimens that a message lists.
-_SPECIMENS = 12
 
 
 class Campaign:
@@ -166,7 +162,7 @@ class Campaign:
             self._database.allow_what_the_size_needs()  # which has grown
             refuse_unsound_runs(self._database, self.path)  # what is added can be read again
             for each in added:
-                refuse_unsound_dwells(self._database, self.path, each.run)
+                refuse_unsound_dwells(self._database, self.path, [each.run])
             return added
 
     def add_event(self, unit: str, age: str | Age, event: str, *, run: int | None = None) -> Event:
@@ -224,26 +220,8 @@ class Campaign:
         ParameterError
             If there is no such specimen.
         """
-        import polars as pl
-
-        where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
         with sqlite_errors(self.path):
-            rows = self._database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
-            listed = [(*row[:3], str(lies_at(row[3], self._home)), *row[4:]) for row in rows]
-            if unit and not listed:
-                raise self._no_unit(unit)
-        numbers: dict[str, Any] = dict.fromkeys(("age", "exponent", "transition_speed"), pl.Float64)
-        names = ["run", "unit", "age", "log", *_LISTED.split(", ")[4:]]
-        kinds = dict.fromkeys(names, pl.String) | numbers | {"run": pl.Int64, "dwells": pl.Int64}
-        return pl.DataFrame(listed, schema=kinds, orient="row")
-
-    def _no_unit(self, unit: str) -> ParameterError:
-        known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
-        near = meant(unit, known)
-        more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
-        listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
-        way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
-        return ParameterError(f"{self.path.name} has no specimen '{unit}'", remedy=way)
+            return runs_of(self._database, self.path, unit)
 
     @property
     def _lists_runs(self) -> str:
@@ -265,22 +243,22 @@ class Campaign:
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path, run)
+            refuse_unsound_dwells(self._database, self.path, [run])
             dwells = self._database.execute(
                 f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
             ).fetchall()
         with self._naming(run, "reduction"):
             return points_of(reduction, dwells)
 
-    def drives(self) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
-        """Return the no-load torque subtracted from each run, and its sensors, by run.
+    def drives(self, runs: Collection[int] | None = None) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
+        """Return the no-load torque subtracted from each run, and its sensors, by run; of all or of ``runs``.
 
         Runs with the same no-load torque share one object.
         """
         from hersey.life.campaign.conversion import drive_of
 
         with sqlite_errors(self.path):
-            rows = self._database.execute("SELECT id, reduction FROM runs")
+            rows = self._database.execute(f"SELECT id, reduction FROM runs WHERE {one_of('id', runs)}")
             same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
             found = {}
             for number, reduction in rows:
@@ -351,8 +329,8 @@ class Campaign:
         joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
         return with_units(joined, self.age_unit)
 
-    def measured(self) -> tuple[IntArray, FloatArray]:
-        """Return the numbers of every dwell for computations on torque.
+    def measured(self, runs: Collection[int] | None = None) -> tuple[IntArray, FloatArray]:
+        """Return the numbers of every dwell, of all runs or of ``runs``, for computations on torque.
 
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
@@ -360,8 +338,8 @@ class Campaign:
         from hersey.life.campaign.dwells import measured_of
 
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path)
-            return measured_of(self._database)
+            refuse_unsound_dwells(self._database, self.path, runs)
+            return measured_of(self._database, runs)
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
@@ -384,28 +362,29 @@ class Campaign:
             found = check(self._database, self._home, progress)
         return replace(found, warnings=(*found.warnings, *self.diagnose().warnings))
 
-    def diagnose(self) -> Diagnosis:
-        """Return which runs do not fit those of their specimen and of the others, and the likeliest slips."""
-        from hersey.life.campaign.diagnosed import measured_runs
+    def diagnose(self, of: Collection[int] | None = None) -> Diagnosis:
+        """Return which runs do not fit those of their specimen and of the others, and the likeliest slips.
+
+        Parameters
+        ----------
+        of
+            Numbers of runs that are compared with no more runs than it takes. Default: all, with all.
+        """
+        from hersey.life.campaign.diagnosed import compared_with, measured_runs
         from hersey.life.diagnostics.diagnosis import diagnosed
 
-        rests = {number: rest for number, (rest, _) in self.drives().items()}
-        events = tuple(self.events())
-        return diagnosed(measured_runs(self.runs(), self.age_unit, *self.measured(), rests, events))
+        listed = self.runs()
+        some = None if of is None else compared_with(listed, of)
+        if some is not None:
+            listed = listed.filter(listed["run"].is_in(some))
+        rests = {number: rest for number, (rest, _) in self.drives(some).items()}
+        return diagnosed(
+            measured_runs(listed, self.age_unit, *self.measured(some), rests, tuple(self.events()))
+        )
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        runs, events = self.runs(), self.events()
-        units = runs["unit"].n_unique()
-        lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
-        for (unit,), of in runs.group_by("unit", maintain_order=True):
-            first, last = Age(of["age"][0], self.age_unit), Age(of["age"][-1], self.age_unit)
-            failed = int((of["no_fit"] != "").sum())
-            ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
-            text = f"{unit}: {of.height} run{'s' * (of.height > 1)}, {ages}, {of['dwells'].sum()} dwells"
-            lines.append(text + (f", {failed} without a fit" if failed else ""))
-            lines += [f"  {each.kind} at {each.age}" for each in events if each.unit == unit]
-        return "\n".join(lines)
+        return overview(self.path.name, self.runs(), self.events(), self.age_unit)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
