@@ -14,7 +14,9 @@ import polars as pl
 import pytest
 
 from hersey.life.age import Age
+from hersey.life.diagnostics.compared import Compared
 from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
+from hersey.life.diagnostics.fingerprint import Fingerprints
 from hersey.life.diagnostics.measured import MeasuredRuns
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, Runs
@@ -257,3 +259,57 @@ def test_the_terminal_names_exchanged_logs_when_they_are_added(tmp_path: Path) -
     checked = typed("campaign", "check", "life.hersey", cwd=tmp_path)
     assert checked.returncode == 1
     assert "logs of U4 and U8 at 140000 pages look exchanged" in checked.words
+
+
+def of_some_runs() -> tuple[np.ndarray, np.ndarray, Fingerprints]:
+    """Numbers of 20 runs of four specimens: level and slope, with errors that differ."""
+    random = np.random.default_rng(4)
+    specimen, age = np.repeat(np.arange(4), 5), np.tile(np.linspace(0.0, 1.0, 5), 4)
+    level = 0.02 * random.standard_normal(4)[specimen] + 0.3 * age + 0.03 * random.standard_normal(20)
+    value = np.column_stack([level, 0.5 * level + 0.01 * random.standard_normal(20)])
+    variance = random.uniform(1e-4, 9e-4, (20, 2))
+    return specimen, age, Fingerprints(value, variance, np.ones(20, dtype=bool), 0.01)
+
+
+def test_whitened_numbers_have_the_variance_of_the_sum() -> None:
+    specimen, age, prints = of_some_runs()
+    found = Compared.of(specimen, age, prints)
+    there = found.with_runs(specimen, age, prints)
+    for i in range(20):
+        covariance = found.whiten @ np.diag(prints.variance[i]) @ found.whiten.T
+        for rows in (found.rows, there.rows):
+            np.testing.assert_allclose(rows.variance[i // 5, i % 5], np.diag(covariance), rtol=1e-12)
+            np.testing.assert_allclose(rows.value[i // 5, i % 5], found.whiten @ prints.value[i], rtol=1e-12)
+
+
+def test_distance_and_influence_are_those_of_a_trend_without_the_run() -> None:
+    """By regression of a Gaussian process on the other runs alone, one after the other."""
+    specimen, age, prints = of_some_runs()
+    at = Compared.of(specimen, age, prints)
+
+    def common(one: np.ndarray, other: np.ndarray, term: int) -> np.ndarray:
+        level, slope, walk, _ = (
+            getattr(at.spreads, name)[term] ** 2 for name in ("level", "slope", "walk", "run")
+        )
+        return np.asarray(level + slope * np.outer(one, other) + walk * np.minimum.outer(one, other))
+
+    def trend(kept: np.ndarray, to: float, term: int) -> tuple[float, float]:
+        times = age[kept]
+        left = (prints.value[kept] @ at.whiten.T - at.mean.at(times))[:, term]
+        own = np.diag(prints.variance[kept] @ (at.whiten**2).T[:, term] + at.spreads.run[term] ** 2)
+        weight = np.linalg.solve(common(times, times, term) + own, common(times, np.array([to]), term)[:, 0])
+        spread = common(np.array([to]), np.array([to]), term)[0, 0]
+        return float(weight @ left), float(spread - weight @ common(times, np.array([to]), term)[:, 0])
+
+    for i in range(20):
+        of = np.flatnonzero(specimen == specimen[i])
+        others = of[of != i]
+        squares = []
+        for term in range(2):
+            expected, variance = trend(others, age[i], term)
+            variance += float(prints.variance[i] @ (at.whiten[term] ** 2) + at.spreads.run[term] ** 2)
+            own = float(at.whiten[term] @ prints.value[i] - at.mean.at(age[[i]])[0, term])
+            squares.append((own - expected) ** 2 / variance)
+        assert at.distance[i] == pytest.approx(np.sqrt(np.mean(squares)), rel=1e-6)
+        moved = (trend(others, 1.0, 0)[0] - trend(of, 1.0, 0)[0]) / at.whiten[0, 0]
+        assert at.influence[i] == pytest.approx(np.expm1(moved), rel=1e-6, abs=1e-9)

@@ -233,7 +233,7 @@ def check(file: _File, *, printing: Printing) -> None:
         with bar("checking", unit="runs") as progress:
             found = opened.check(progress)
         if printing.as_json:
-            printing.json(opened.to_dict(), warnings=found.warnings)
+            printing.json(opened.to_dict(), warnings=found.warnings, each=found.each)
         else:
             printing.text(found.summary())
     if not found.ok:

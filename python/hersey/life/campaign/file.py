@@ -360,7 +360,8 @@ class Campaign:
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             found = check(self._database, self._home, progress)
-        return replace(found, warnings=(*found.warnings, *self.diagnose().warnings))
+        diagnosis = self.diagnose()
+        return replace(found, warnings=(*found.warnings, *diagnosis.warnings), each=diagnosis.each)
 
     def diagnose(self, of: Collection[int] | None = None) -> Diagnosis:
         """Return which runs do not fit those of their specimen and of the others, and the likeliest slips.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,9 +17,9 @@ from hersey.life.diagnostics.measured import MeasuredRuns
 from hersey.life.diagnostics.same_logs import same_logs
 from hersey.life.diagnostics.slips import Slip
 
-#: Gain in log probability from which a slip of each kind is named: the mean of that by the trend of all runs
-#: as they are and of that by the trend with the slip undone, as a slip hides in the first and shapes the
-#: second.
+#: Gain in log probability from which a slip of each kind is named, in a usual life test: the mean of that by
+#: the trend of all runs as they are and of that by the trend with the slip undone, as a slip hides in the
+#: first and shapes the second. Where more runs may be such slips, one reaches it by chance more often.
 LEAST = {
     slips.EXCHANGED: 7.5,
     slips.REORDERED: 9.0,
@@ -29,6 +30,10 @@ LEAST = {
     slips.MACHINE: 7.0,
     slips.LUBRICANT: 5.5,
 }
+#: Specimens of a usual life test, and runs of each.
+_SPECIMENS, _EACH = 8, 6
+#: Factor from which on a torque is that of another machine: closer ones are of how a specimen is mounted.
+_OTHER_MACHINE = 1.1
 #: Gain by the first trend from which a slip is judged by the second.
 _WORTH = 2.0
 #: Kinds of a run from elsewhere, and how many runs, the farthest off, may be such.
@@ -38,8 +43,8 @@ _FOREIGN, _FAR = (slips.MACHINE, slips.LUBRICANT), 2
 _INSIDE, _AT_END, _USUAL = 6.0, 12.0, 3.0
 #: How many times farther, squared, than those of other specimens the rest of its specimen may lie without it.
 _AGREE = 1.5
-#: Slips that are looked for, at most, and those that are judged for each.
-_MOST, _JUDGED = 10, 5
+#: Slips that are looked for, at most, those that are judged for each, and of these of one kind.
+_MOST, _JUDGED, _OF_KIND_JUDGED = 10, 5, 2
 #: Fewest runs of a life test and of a specimen that are compared.
 _RUNS, _OF_SPECIMEN = 8, 3
 #: How far apart ages of exchanged logs may be, in the usual last age: half as much if not of one place in
@@ -73,8 +78,9 @@ class State:
         np.maximum.at(last, self.specimen[places], self.age[places])
         return float(np.median(last[last > 0.0])) if (last > 0.0).any() else 1.0
 
+    @cached_property
     def compared(self) -> Compared:
-        """Return the runs compared."""
+        """The runs compared."""
         return Compared.of(*self._runs(self.usual))
 
     def by(self, other: State, trend: Compared) -> Compared:
@@ -128,11 +134,19 @@ def candidates(at: Compared) -> list[Slip]:
     return [slip for find in dict.fromkeys(_OF_KIND.values()) for slip in find(at)]
 
 
+class Found(NamedTuple):
+    """The slips, the likeliest first; distance and influence of each run, NaN where it is not compared."""
+
+    slips: list[Slip]
+    distance: FloatArray
+    influence: FloatArray
+
+
 @one_thread()
-def find_slips(runs: MeasuredRuns) -> list[Slip]:
-    """Return the slips, the likeliest first."""
+def find_slips(runs: MeasuredRuns) -> Found:
+    """Return the slips, and how every run as it is lies to the trend of those without slips."""
     prints = fingerprints(runs)
-    state = State(runs.specimen, runs.since, prints, prints.known.copy())
+    state = as_it_is = State(runs.specimen, runs.since, prints, prints.known.copy())
     found = same_logs(runs)[:_MOST]
     for slip in found:
         state = state.without(slip)
@@ -142,19 +156,49 @@ def find_slips(runs: MeasuredRuns) -> list[Slip]:
             break
         found.append(likeliest)
         state = state.without(likeliest)
-    return found
+    distance, influence = np.full((2, len(runs.number)), np.nan)
+    if state.places.size:
+        at = as_it_is.by(state, state.compared)
+        distance[as_it_is.places], influence[as_it_is.places] = at.distance, at.influence
+    return Found(found, distance, influence)
+
+
+def least_gains(runs_of: IntArray) -> dict[str, float]:
+    """Return the gain from which a slip is named, by kind: more among more runs, for the same false alarms.
+
+    The chance that any of so many gains exceeds one by chance is at most their number times that of one.
+    ``runs_of`` is the number of runs of each specimen.
+    """
+    specimens, runs = runs_of.size, int(runs_of.sum())
+    within = float((runs_of * (runs_of - 1)).sum()) / (_SPECIMENS * _EACH * (_EACH - 1))
+    of_specimens, of_runs = specimens / _SPECIMENS, runs / (_SPECIMENS * _EACH)
+    between = of_runs * (specimens - 1) / (_SPECIMENS - 1)
+    times = {slips.EXCHANGED: between, slips.REORDERED: within} | dict.fromkeys(
+        (slips.AGES, slips.TORQUES), of_specimens
+    )
+    return {kind: gain + np.log(max(times.get(kind, of_runs), 1.0)) for kind, gain in LEAST.items()}
 
 
 def _likeliest(state: State) -> Slip | None:
     """The likeliest slip; None if there is none."""
-    at = state.compared()
-    every = sorted(candidates(at), key=lambda each: LEAST[each.kind] - each.gain)
-    worth = [each for each in every if each.gain > _WORTH and each.kind not in _FOREIGN][:_JUDGED]
+    at = state.compared
+    least = least_gains(at.rows.given.sum(axis=1))
+    every = sorted(candidates(at), key=lambda each: least[each.kind] - each.gain)
+    worth = _of_each_kind([each for each in every if each.gain > _WORTH and each.kind not in _FOREIGN])
     judged = [_judged(state, slip) for slip in worth]
     for place in np.argsort(-at.squares, kind="stable")[:_FAR].tolist():
-        judged.append(_foreign(state, at, [each for each in every if each.runs == (place,)]))
-    named = [each for each in judged if each.gain >= LEAST[each.kind]]
-    return max(named, key=lambda each: each.gain - LEAST[each.kind], default=None)
+        judged.append(_foreign(state, at, [each for each in every if each.runs == (place,)], least))
+    named = [each for each in judged if each.gain >= least[each.kind]]
+    return max(named, key=lambda each: each.gain - least[each.kind], default=None)
+
+
+def _of_each_kind(every: list[Slip]) -> list[Slip]:
+    """Return the first slips, no more than some of a kind: what many runs suffer from is one slip of all."""
+    chosen: list[Slip] = []
+    for each in every:
+        if [other.kind for other in chosen].count(each.kind) < _OF_KIND_JUDGED:
+            chosen.append(each)
+    return chosen[:_JUDGED]
 
 
 def _judged(state: State, slip: Slip) -> Slip:
@@ -163,14 +207,16 @@ def _judged(state: State, slip: Slip) -> Slip:
     undone = state.without(there)
     if not undone.places.size:
         return replace(there, gain=-np.inf)
-    at = state.by(undone, undone.compared())
+    at = state.by(undone, undone.compared)
     again = [each for each in _OF_KIND[slip.kind](at) if each.kind == slip.kind and each.runs == slip.runs]
-    without = max((each.gain for each in again), default=-np.inf)
-    return replace(there, gain=0.5 * (slip.gain + without))
+    if not again:
+        return replace(there, gain=-np.inf)
+    best = max(again, key=lambda each: each.gain)
+    return replace(there, factor=best.factor, gain=0.5 * (slip.gain + best.gain))
 
 
-def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
-    """The likelier of another machine and another lubricant for a run, by the trend without it.
+def _foreign(state: State, before: Compared, of_run: list[Slip], least: dict[str, float]) -> Slip:
+    """The likeliest of another machine, lubricant and unit of torque for a run, by the trend without it.
 
     A run whose shape nothing explains is foreign all the same if it lies many times farther off, squared,
     than every run of the other specimens; but the rest of its own must agree without it: a step that stays
@@ -182,10 +228,12 @@ def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
     undone = state.without(Slip(slips.LUBRICANT, (there,), 0.0))
     if not undone.places.size:
         return Slip(slips.LUBRICANT, (there,), -np.inf)
-    clean = undone.compared()
+    clean = undone.compared
     at = state.by(undone, clean)
     again = {each.kind: each for each in slips.alone(at) if each.runs == (place,)}
-    best = max((again[kind] for kind in _FOREIGN), key=lambda each: each.gain)
+    if abs(np.log(again[slips.MACHINE].factor)) < np.log(_OTHER_MACHINE):
+        del again[slips.MACHINE]
+    best = max(again.values(), key=lambda each: each.gain)
     others = at.squares[at.rows.row != at.rows.row[place]].max(initial=_USUAL * at.terms)
     same = undone.specimen[undone.places] == state.specimen[there]
     if same.any() and clean.squares[same].max() > _AGREE * others:
@@ -197,5 +245,5 @@ def _foreign(state: State, before: Compared, of_run: list[Slip]) -> Slip:
     return replace(
         best,
         runs=(there,),
-        gain=max(gain, float(LEAST[best.kind] + 2.0 * np.log(max(times, np.finfo(float).tiny)))),
+        gain=max(gain, float(least[best.kind] + 2.0 * np.log(max(times, np.finfo(float).tiny)))),
     )
