@@ -146,11 +146,17 @@ def test_logs_of_one_specimen_exchanged() -> None:
     }
 
 
+@cache
+def of_scaled_ages(unit: str, factor: float) -> Diagnosis:
+    """What is found if the ages of a specimen are so many times theirs."""
+    return diagnosed(measured(aged(factor, at(unit))))
+
+
 @pytest.mark.parametrize(
     ("unit", "factor"), [("U3", 1e-3), pytest.param("U7", 60.0, marks=pytest.mark.nightly)]
 )
 def test_ages_of_a_specimen_in_another_unit(unit: str, factor: float) -> None:
-    found = diagnosed(measured(aged(factor, at(unit))))
+    found = of_scaled_ages(unit, factor)
     (slip,) = facts(found)
     assert (slip["kind"], slip["unit"], slip["runs"]) == ("ages scaled", unit, 6)
     assert slip["factor"] == pytest.approx(factor)
@@ -166,33 +172,40 @@ def test_an_age_that_was_typed_wrong() -> None:
     assert slip["factor"] == pytest.approx(10.0)
 
 
-@pytest.mark.parametrize("age", [70000.0, pytest.param(None, marks=pytest.mark.nightly)])
-def test_torque_in_another_unit(age: float | None) -> None:
-    (slip,) = facts(diagnosed(measured(times(141.612, at("U2", age)))))
-    assert (slip["kind"], slip["unit"]) == ("torques scaled" if age is None else "torque scaled", "U2")
+@pytest.mark.nightly
+def test_torques_of_a_specimen_in_another_unit() -> None:
+    (slip,) = facts(diagnosed(measured(times(141.612, at("U2")))))
+    assert (slip["kind"], slip["unit"]) == ("torques scaled", "U2")
     assert slip["factor"] == pytest.approx(141.612)
-    assert slip.get("age") == age
 
 
-def test_a_run_of_another_machine() -> None:
-    found = diagnosed(measured(times(1.4, at("U5", 70000.0))))
-    (slip,) = facts(found)
-    assert (slip["kind"], slip["unit"], slip["run"], slip["age"]) == ("another machine", "U5", 27, 70000.0)
-    assert slip["factor"] == pytest.approx(1.4, rel=0.05)
-    assert found.excluded == [26]
-
-
-def test_a_run_with_another_lubricant() -> None:
-    runs = changed(lambda run: other_oil(run) if at("U5", 105000.0)(run) else run)
-    (slip,) = facts(diagnosed(measured(runs)))
-    assert (slip["kind"], slip["unit"], slip["run"]) == ("another lubricant or machine", "U5", 28)
-
-
-def test_a_log_that_was_copied() -> None:
+def test_slips_of_single_runs_are_each_named() -> None:
+    """A copied log, a torque in another unit, a run of another machine, and one with another lubricant."""
     (copied,) = [run for run in shipped() if at("U1", 70000.0)(run)]
-    runs = changed(lambda run: replace(copied, age=run.age) if at("U1", 105000.0)(run) else run)
-    (slip,) = facts(diagnosed(measured(runs)))
-    assert (slip["kind"], slip["run"], slip["other_run"]) == ("same log", 3, 4)
+    made: list[tuple[Callable[[Run], bool], Callable[[Run], Run]]] = [
+        (at("U1", 105000.0), lambda run: replace(copied, age=run.age)),
+        (at("U2", 70000.0), lambda run: replace(run, torque=141.612 * run.torque)),
+        (at("U5", 70000.0), lambda run: replace(run, torque=1.4 * run.torque)),
+        (at("U7", 105000.0), other_oil),
+    ]
+    runs = changed(lambda run: next((change(run) for which, change in made if which(run)), run))
+    found = diagnosed(measured(runs))
+    by_kind = {slip["kind"]: slip for slip in facts(found)}
+    assert set(by_kind) == {"same log", "torque scaled", "another machine", "another lubricant or machine"}
+    assert len(found.slips) == 4
+    assert (by_kind["same log"]["run"], by_kind["same log"]["other_run"]) == (3, 4)
+    torque, machine = by_kind["torque scaled"], by_kind["another machine"]
+    assert (torque["unit"], torque["run"], torque["age"]) == ("U2", 9, 70000.0)
+    assert torque["factor"] == pytest.approx(141.612)
+    assert (machine["unit"], machine["run"], machine["age"]) == ("U5", 27, 70000.0)
+    assert machine["factor"] == pytest.approx(1.4, rel=0.05)
+    lubricant = by_kind["another lubricant or machine"]
+    assert (lubricant["unit"], lubricant["run"]) == ("U7", 40)
+    assert found.excluded == [2, 3, 8, 26, 39]
+    table = found.to_frame()
+    far = table.filter(pl.col("distance (1)") > 5.0)["run"].to_list()
+    assert far == [9, 27, 40]  # each among the others as they should be
+    assert dict(zip(table["run"], table["slip"], strict=True))[9] == "torque scaled"
 
 
 def test_a_few_runs_are_not_doubted() -> None:
@@ -229,7 +242,7 @@ def medians(runs: list[Run], excluded: list[int]) -> dict[str, float]:
 def test_slips_do_not_move_the_other_specimens() -> None:
     right = medians(list(shipped()), [])
     runs = aged(1e-3, at("U3"))
-    found = diagnosed(measured(runs))
+    found = of_scaled_ages("U3", 1e-3)
     moved = medians(runs, found.excluded)
     others = [unit for unit in right if unit != "U3"]
     assert max(abs(moved[unit] / right[unit] - 1.0) for unit in others) < 0.03

@@ -39,15 +39,18 @@ class Compared:
     freedom: float = FREEDOM
 
     @classmethod
-    def of(cls, specimen: IntArray, age: FloatArray, prints: Fingerprints) -> Compared:
-        """Return known runs compared; ages are over a usual last age."""
+    def of(
+        cls, specimen: IntArray, age: FloatArray, prints: Fingerprints, near: Compared | None = None
+    ) -> Compared:
+        """Return known runs compared; ages are over a usual last age, ``near`` has almost the same runs."""
         raw = Rows.of(specimen, age, prints.value, prints.variance)
         floor = np.maximum(np.sqrt(np.median(prints.variance, axis=0)), _LEAST)
         whiten = whitening(innovations(raw, raw.value - robust_mean(raw).at(raw.age)), floor)
         variance = prints.variance @ (whiten**2).T
         rows = Rows.of(specimen, age, prints.value @ whiten.T, variance)
         mean = robust_mean(rows)
-        spreads = spreads_of(rows, rows.value - mean.at(rows.age))
+        near_by = None if near is None or near.terms != whiten.shape[0] else near.spreads
+        spreads = spreads_of(rows, rows.value - mean.at(rows.age), near_by)
         found = cls(rows, whiten, mean, spreads)
         return replace(found, freedom=freedom_of(found.squares, found.terms))
 

@@ -60,6 +60,7 @@ class State:
     age: FloatArray
     prints: Fingerprints
     used: BoolArray
+    near: Compared | None = None  #: almost the same runs, compared
 
     @cached_property
     def places(self) -> IntArray:
@@ -81,7 +82,7 @@ class State:
     @cached_property
     def compared(self) -> Compared:
         """The runs compared."""
-        return Compared.of(*self._runs(self.usual))
+        return Compared.of(*self._runs(self.usual), self.near)
 
     def by(self, other: State, trend: Compared) -> Compared:
         """Return the runs by the trend of another state."""
@@ -92,7 +93,19 @@ class State:
         prints = replace(self.prints, value=self.prints.value[at], variance=self.prints.variance[at])
         return self.specimen[at], self.age[at] / usual, prints
 
+    def with_run(self, place: int, other: State) -> State:
+        """Return it with one run as it is in another."""
+        age, used = self.age.copy(), self.used.copy()
+        value, variance = self.prints.value.copy(), self.prints.variance.copy()
+        age[place], used[place] = other.age[place], other.used[place]
+        value[place], variance[place] = other.prints.value[place], other.prints.variance[place]
+        return replace(self, age=age, used=used, prints=replace(self.prints, value=value, variance=variance))
+
     def without(self, slip: Slip) -> State:
+        """Return it with a slip undone, to be compared from where it is."""
+        return replace(self.undone(slip), near=self.compared if self.places.size else None)
+
+    def undone(self, slip: Slip) -> State:
         """Return it with a slip undone."""
         runs = list(slip.runs)
         if slip.kind in (slips.EXCHANGED, slips.REORDERED):
@@ -149,18 +162,29 @@ def find_slips(runs: MeasuredRuns) -> Found:
     state = as_it_is = State(runs.specimen, runs.since, prints, prints.known.copy())
     found = same_logs(runs)[:_MOST]
     for slip in found:
-        state = state.without(slip)
+        state = state.undone(slip)
     while len(found) < _MOST and state.places.size:
         likeliest = _likeliest(state)
         if likeliest is None:
             break
         found.append(likeliest)
         state = state.without(likeliest)
-    distance, influence = np.full((2, len(runs.number)), np.nan)
-    if state.places.size:
-        at = as_it_is.by(state, state.compared)
-        distance[as_it_is.places], influence[as_it_is.places] = at.distance, at.influence
-    return Found(found, distance, influence)
+    return Found(found, *_as_they_lie(as_it_is, state, found))
+
+
+def _as_they_lie(as_it_is: State, mended: State, found: list[Slip]) -> tuple[FloatArray, FloatArray]:
+    """Distance and influence of each run, one with a slip as it is among others that are mended."""
+    distance, influence = np.full((2, as_it_is.age.size), np.nan)
+    if not mended.places.size:
+        return distance, influence
+    trend = mended.compared
+    distance[mended.places], influence[mended.places] = trend.distance, trend.influence
+    for place in {place for slip in found for place in slip.runs}:
+        state = mended.with_run(place, as_it_is)
+        at, own = state.by(mended, trend), state.places == place
+        if own.any():
+            distance[place], influence[place] = at.distance[own][0], at.influence[own][0]
+    return distance, influence
 
 
 def least_gains(runs_of: IntArray) -> dict[str, float]:
