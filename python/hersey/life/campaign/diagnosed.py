@@ -9,16 +9,29 @@ import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray, IntArray
+from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
 from hersey.life.diagnostics.measured import MeasuredRuns, drive_torque
 from hersey.life.maintenance import Event
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
+    from hersey.life.campaign.file import Campaign
 
 #: Other specimens with which some are compared, half of them those added last, where logs get mixed up.
 _OTHERS = 40
 #: Runs from which on all are compared.
 _MANY = 1000
+
+
+def diagnosis_of(campaign: Campaign, of: Collection[int] | None) -> Diagnosis:
+    """Return what does not fit among the runs of a campaign, or some and those they are compared with."""
+    listed = campaign.runs()
+    some = None if of is None else compared_with(listed, of)
+    if some is not None:
+        listed = listed.filter(listed["run"].is_in(some))
+    rests = {number: rest for number, (rest, _) in campaign.drives(some).items()}
+    events = tuple(campaign.events())
+    return diagnosed(measured_runs(listed, campaign.age_unit, *campaign.measured(some), rests, events))
 
 
 def compared_with(runs: pl.DataFrame, of: Collection[int]) -> list[int] | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.errors import OutputError, ParameterError, way_in
+from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there
 from hersey.life.campaign.checks import CampaignCheck, check
@@ -18,7 +17,7 @@ from hersey.life.campaign.content import damaged, one_of, refuse_unsound_dwells,
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
-from hersey.life.campaign.listing import overview, runs_of
+from hersey.life.campaign.listing import no_run, overview, runs_of
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 from hersey.life.maintenance import Event, kind_of
 from hersey.units import takes_si
@@ -45,6 +44,7 @@ class Campaign:
         """Take an open file: see `open` and `create`."""
         self.path, self._database = path, database
         self._home = path.absolute().parent
+        self._read: dict[str, tuple[tuple[int, int], Any]] = {}
 
     @classmethod
     def create(cls, path: str | Path, *, wait: float = PATIENCE) -> Campaign:
@@ -223,13 +223,6 @@ class Campaign:
         with sqlite_errors(self.path):
             return runs_of(self._database, self.path, unit)
 
-    @property
-    def _lists_runs(self) -> str:
-        """What shows the specimens and runs."""
-        terminal = way_in() == "terminal"
-        way = f"hersey campaign list {shlex.quote(str(self.path))}" if terminal else "campaign.runs()"
-        return f"list them with: {way}"
-
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run as they were added; rows of the log are not kept.
 
@@ -282,11 +275,7 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
-        from hersey.life.campaign.records import read_json
-
-        kept = self._of_run("fit", run)
-        with self._naming(run, "fit"):
-            return None if kept is None else read_json(kept)
+        return self._json_of("fit", run)
 
     def settings(self, run: int) -> dict[str, Any]:
         """Return how the log of a run was read.
@@ -296,17 +285,20 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
+        return self._json_of("settings", run)
+
+    def _json_of(self, column: str, run: int) -> Any:
         from hersey.life.campaign.records import read_json
 
-        kept = self._of_run("settings", run)
-        with self._naming(run, "settings"):
-            return read_json(kept)
+        kept = self._of_run(column, run)
+        with self._naming(run, column):
+            return None if kept is None else read_json(kept)
 
     def _of_run(self, column: str, run: int) -> Any:
         with sqlite_errors(self.path):
             row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
         if row is None:
-            raise ParameterError(f"{self.path.name} has no run {run}", remedy=self._lists_runs)
+            raise no_run(self.path, run)
         return row[0]
 
     def dwells(self) -> pl.DataFrame:
@@ -315,19 +307,15 @@ class Campaign:
         The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is the
         no-load torque that was subtracted, or 0.
         """
-        import polars as pl
+        return self._unless_changed("dwells", self._dwells)
 
-        from hersey.life.campaign.conversion import rests_of
-        from hersey.life.campaign.dwells import dwells_of, with_units
+    def _dwells(self) -> pl.DataFrame:
+        from hersey.life.campaign.dwells import dwells_of
 
+        rests = {run: rest for run, (rest, _) in self.drives().items()}
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            dwells = dwells_of(self._database)
-        rests = {run: rest for run, (rest, _) in self.drives().items()}
-        dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, rests)))
-        of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
-        joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
-        return with_units(joined, self.age_unit)
+            return dwells_of(self._database, self.runs(), rests, self.age_unit)
 
     def measured(self, runs: Collection[int] | None = None) -> tuple[IntArray, FloatArray]:
         """Return the numbers of every dwell, of all runs or of ``runs``, for computations on torque.
@@ -337,9 +325,22 @@ class Campaign:
         """
         from hersey.life.campaign.dwells import measured_of
 
+        def read() -> tuple[IntArray, FloatArray]:
+            with sqlite_errors(self.path):
+                refuse_unsound_dwells(self._database, self.path, runs)
+                return measured_of(self._database, runs)
+
+        of_run, table = read() if runs is not None else self._unless_changed("measured", read)
+        return of_run.copy(), table.copy()
+
+    def _unless_changed(self, what: str, read: Callable[[], Any]) -> Any:
+        """Return what was read before, if nobody has changed the file since."""
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path, runs)
-            return measured_of(self._database, runs)
+            version = self._database.execute("PRAGMA data_version").fetchone()[0]
+        state = version, self._database.total_changes
+        if what not in self._read or self._read[what][0] != state:
+            self._read[what] = state, read()
+        return self._read[what][1]
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
@@ -371,17 +372,9 @@ class Campaign:
         of
             Numbers of runs that are compared with no more runs than it takes. Default: all, with all.
         """
-        from hersey.life.campaign.diagnosed import compared_with, measured_runs
-        from hersey.life.diagnostics.diagnosis import diagnosed
+        from hersey.life.campaign.diagnosed import diagnosis_of
 
-        listed = self.runs()
-        some = None if of is None else compared_with(listed, of)
-        if some is not None:
-            listed = listed.filter(listed["run"].is_in(some))
-        rests = {number: rest for number, (rest, _) in self.drives(some).items()}
-        return diagnosed(
-            measured_runs(listed, self.age_unit, *self.measured(some), rests, tuple(self.events()))
-        )
+        return diagnosis_of(self, of)
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import shlex
 import sqlite3
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import ParameterError, meant
+from hersey.errors import ParameterError, meant, way_in
 from hersey.life.age import Age
 from hersey.life.campaign.adding import lies_at
 from hersey.life.maintenance import Event
@@ -48,6 +49,12 @@ def _no_unit(database: sqlite3.Connection, path: Path, unit: str) -> ParameterEr
     listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
     way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
     return ParameterError(f"{path.name} has no specimen '{unit}'", remedy=way)
+
+
+def no_run(path: Path, run: int) -> ParameterError:
+    """Return the error of a run that is not there, with what lists those that are."""
+    way = f"hersey campaign list {shlex.quote(str(path))}" if way_in() == "terminal" else "campaign.runs()"
+    return ParameterError(f"{path.name} has no run {run}", remedy=f"list them with: {way}")
 
 
 def overview(name: str, runs: pl.DataFrame, events: list[Event], age_unit: str) -> str:

@@ -10,7 +10,6 @@ that film is, viscosity to the power 0.6.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -49,8 +48,8 @@ from hersey.machine.machine import Machine
 _PLACES = np.array([-6.0, -4.0, -3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0])
 _MIDDLE = 7
 _NARROWEST, _WIDEST, _SEEN = 1e-3, 0.4, 0.9
-#: Dwells that are computed at once, and how many such blocks.
-_AT_ONCE, _THREADS = 20_000, 2
+#: Dwells that are computed at once.
+_AT_ONCE = 20_000
 #: Standard deviations beforehand: ln of the factors on viscosity, roughness and boundary friction; the rest
 #: of the drive over the greatest torque, and its change in 100 K over the same.
 _LEVEL, _ROUGH, _HARD, _REST, _REST_PER_100_KELVIN = 2.0, 0.7, 0.4, 1.0, 0.05
@@ -230,8 +229,7 @@ class LayerFit:
 
     def layers(self, common: Common) -> Layers:
         """Return the layers of all runs, given what is common to them."""
-        with ThreadPoolExecutor(_THREADS) as pool:  # most of it is NumPy's, without Python's lock
-            parts = list(pool.map(_profiled, self._searches(1, common)))
+        parts = [_profiled(each) for each in self._searches(1, common)]
         names = [each.name for each in fields(Layers) if each.name not in ("reference", "common")]
         return Layers(
             **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
