@@ -34,7 +34,7 @@ FAILED, RUNNING = 0.95, 0.05
 #: Times the age followed up to which runs show an age: beyond it growth may set in or end that no run shows.
 FAR = 3.0
 #: Times the age followed beyond which no interval begins: what sets in later, runs did not show.
-SURE = 2.0
+SURE = 1.75
 #: Fewest specimens that show how specimens differ: fewer make no population.
 POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.

@@ -28,7 +28,7 @@ class Attention(Record):
         float | None,
         Means(
             "age that the running specimens should reach: the least lower end of their intervals, at most "
-            "twice the age followed; null if none is running"
+            "1.75 times the age followed; null if none is running"
         ),
     ]
 
