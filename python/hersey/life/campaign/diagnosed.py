@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from hersey.life.maintenance import Event
 
 if TYPE_CHECKING:
     from hersey.damping.no_load_torque import NoLoadTorque
-    from hersey.life.campaign.file import Campaign
+    from hersey.log.sensors import Sensors
 
 #: Other specimens with which some are compared, half of them those added last, where logs get mixed up.
 _OTHERS = 40
@@ -23,15 +23,23 @@ _OTHERS = 40
 _MANY = 1000
 
 
-def diagnosis_of(campaign: Campaign, of: Collection[int] | None) -> Diagnosis:
-    """Return what does not fit among the runs of a campaign, or some and those they are compared with."""
-    listed = campaign.runs()
-    some = None if of is None else compared_with(listed, of)
+def diagnosis_of(
+    runs: pl.DataFrame,
+    age_unit: str,
+    events: tuple[Event, ...],
+    of: Collection[int] | None,
+    drives: Callable[[Collection[int] | None], Mapping[int, tuple[NoLoadTorque | None, Sensors]]],
+    measured: Callable[[Collection[int] | None], tuple[IntArray, FloatArray]],
+) -> Diagnosis:
+    """Return what does not fit among all runs, or among some, ``of``, and those that they are compared with.
+
+    ``drives`` and ``measured`` read that of runs, as `Campaign` has them.
+    """
+    some = None if of is None else compared_with(runs, of)
     if some is not None:
-        listed = listed.filter(listed["run"].is_in(some))
-    rests = {number: rest for number, (rest, _) in campaign.drives(some).items()}
-    events = tuple(campaign.events())
-    return diagnosed(measured_runs(listed, campaign.age_unit, *campaign.measured(some), rests, events))
+        runs = runs.filter(runs["run"].is_in(some))
+    rests = {number: rest for number, (rest, _) in drives(some).items()}
+    return diagnosed(measured_runs(runs, age_unit, *measured(some), rests, events))
 
 
 def compared_with(runs: pl.DataFrame, of: Collection[int]) -> list[int] | None:

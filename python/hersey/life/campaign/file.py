@@ -374,7 +374,8 @@ class Campaign:
         """
         from hersey.life.campaign.diagnosed import diagnosis_of
 
-        return diagnosis_of(self, of)
+        read = self.drives, self.measured
+        return diagnosis_of(self.runs(), self.age_unit, tuple(self.events()), of, *read)
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
