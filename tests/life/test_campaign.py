@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -22,7 +23,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError, UnitError
 from hersey.life.age import Age
-from hersey.life.campaign import Campaign, Entry
+from hersey.life.campaign import Campaign, Entry, dwells
 from hersey.life.campaign import store as storing
 from hersey.life.campaign.conversion import entry_of, points_of
 from hersey.log.impossible import Impossible
@@ -460,6 +461,29 @@ def test_added_runs_are_compared_with_a_part_of_many(campaign: Campaign) -> None
     assert found.unit.count("F050") == 2
     assert found.of_run.size == sum(len(another(0).dwells) for _ in range(42))
     assert campaign.diagnose().runs.number == tuple(campaign.runs()["run"])
+
+
+def test_dwells_are_read_once_until_somebody_changes_the_file(
+    campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    campaign.add_entries([(another(0), "F1", Age(1.0, "h"))])
+    reads, read = [0], dwells.measured_of
+
+    def counted(*given: Any) -> Any:
+        reads[0] += 1
+        return read(*given)
+
+    monkeypatch.setattr(dwells, "measured_of", counted)
+    of_run, table = campaign.measured()
+    table[:] = 0.0
+    assert campaign.measured()[1].any()
+    assert reads == [1]
+    campaign.add_entries([(another(1), "F2", Age(1.0, "h"))])
+    assert campaign.measured()[0].size == 2 * of_run.size
+    with Campaign.open(campaign.path) as other:
+        other.add_entries([(another(2), "F3", Age(1.0, "h"))])
+    assert campaign.measured()[0].size == 3 * of_run.size
+    assert reads == [3]
 
 
 def test_among_few_runs_all_are_compared(campaign: Campaign) -> None:

@@ -285,9 +285,9 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
-        return self._json_of("settings", run)
+        return self._json_of("settings", run) or {}
 
-    def _json_of(self, column: str, run: int) -> Any:
+    def _json_of(self, column: str, run: int) -> dict[str, Any] | None:
         from hersey.life.campaign.records import read_json
 
         kept = self._of_run(column, run)
@@ -307,7 +307,8 @@ class Campaign:
         The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is the
         no-load torque that was subtracted, or 0.
         """
-        return self._unless_changed("dwells", self._dwells)
+        every: pl.DataFrame = self._unless_changed("dwells", self._dwells)
+        return every
 
     def _dwells(self) -> pl.DataFrame:
         from hersey.life.campaign.dwells import dwells_of
@@ -374,8 +375,7 @@ class Campaign:
         """
         from hersey.life.campaign.diagnosed import diagnosis_of
 
-        read = self.drives, self.measured
-        return diagnosis_of(self.runs(), self.age_unit, tuple(self.events()), of, *read)
+        return diagnosis_of(self.runs(), self.age_unit, tuple(self.events()), of, self.drives, self.measured)
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""

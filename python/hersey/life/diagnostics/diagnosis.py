@@ -81,15 +81,19 @@ def diagnosed(measured: MeasuredRuns) -> Diagnosis:
     """Return the slips of runs."""
     found = find_slips(measured)
     kinds = {place: slip.kind for slip in reversed(found.slips) for place in slip.runs}
-    numbers = zip(found.distance.tolist(), found.influence.tolist(), strict=True)
     each = tuple(
         RunCompared(
             measured.number[place],
             measured.unit[place],
             float(measured.age[place]),
-            *(None if np.isnan(number) else number for number in pair),
+            _if_known(found.distance[place]),
+            _if_known(found.influence[place]),
             kinds.get(place, ""),
         )
-        for place, pair in enumerate(numbers)
+        for place in range(len(measured.number))
     )
     return Diagnosis(measured, tuple(found.slips), each)
+
+
+def _if_known(number: float) -> float | None:
+    return None if np.isnan(number) else float(number)

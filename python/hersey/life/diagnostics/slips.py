@@ -242,7 +242,7 @@ class SharedAges:
         at = np.minimum(np.searchsorted(self.ages, ages), max(self.ages.size - 1, 0))
         others = np.where(self.ages[at] == ages, self.had_by[at], 0) if self.ages.size else np.zeros(0)
         others = others - np.isin(pairs, self.pairs)
-        return np.bincount(row, others >= 1, self.specimens)
+        return np.asarray(np.bincount(row, others >= 1, self.specimens), dtype=float)
 
 
 def _to_six_digits(age: FloatArray) -> IntArray:
