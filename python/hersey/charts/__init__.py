@@ -84,6 +84,7 @@ CHARTS = {
     "FailureLaw": ("failures", "law_chart"),
     "RemainingLife": ("failures", "remaining_chart"),
     "FleetForecast": ("failures", "fleet_chart"),
+    "Replacement": ("replacement", "replacement_chart"),
     "LifeTestPlan": ("failures", "plan_chart"),
     "OtherUses": ("other_uses", "other_uses_chart"),
     "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),

@@ -32,6 +32,8 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
                 made[name] = chart_of(part)
         if found.curve is not None:
             made["population"] = failures_chart(found.units, found.curve, found.age_unit)
+        if found.replacement is not None:
+            made["replacement"] = chart_of(found.replacement)
     return made
 
 

@@ -14,7 +14,8 @@ from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, uses_beside
-from hersey.life.time_to_failure.estimate import TimeToFailure, age_asked, time_to_failure
+from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
+from hersey.life.time_to_failure.questions import questions_of
 from hersey.result import Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -76,6 +77,8 @@ def follow(
     seed: int = 0,
     unit: str = "",
     until: str | float | None = None,
+    share: float | None = None,
+    cost_of_failure: float | None = None,
     uses: bool = False,
     step: Step | None = None,
 ) -> LifeTest:
@@ -93,6 +96,10 @@ def follow(
         Specimen whose maps are drawn. Default: the one that fails next.
     until
         Age that specimens should reach, e.g. "250000 pages": the next runs are those that show best which do.
+    share
+        Share of new specimens that may fail before that age, e.g. 0.05.
+    cost_of_failure
+        Cost of a failure in service over that of a planned replacement, e.g. 10.
     uses
         Whether to compute the ages also for other limits, coldest starts and duties.
     step
@@ -103,14 +110,15 @@ def follow(
     InsufficientDataError
         If no run shows any indicator.
     ParameterError, UnitError
-        If the campaign has no such specimen, or ``until`` is no age in the unit of its runs.
+        If the campaign has no such specimen, ``until`` is no age in the unit of its runs, ``share`` is not
+        between 0 and 1 or comes without ``until``, or ``cost_of_failure`` is not above 1 or beyond 100.
     """
     if unit:
         try:
             campaign.runs(unit)
         except ParameterError as error:
             raise error.within(Setting("unit").to()) from None
-    age_asked(until, campaign.age_unit)
+    questions_of(until, share, cost_of_failure, campaign.age_unit)
     said = step or (lambda _text: None)
     warnings: list[Warning] = []
 
@@ -134,7 +142,7 @@ def follow(
         indicators = film.with_starvation(indicators)
     indicators = indicators.without_runs(diagnosis.excluded)
     said("growth and time to failure")
-    found = time_to_failure(indicators, until=until, seed=seed)
+    found = time_to_failure(indicators, until=until, share=share, cost_of_failure=cost_of_failure, seed=seed)
     drift = tried("drift", lambda: fit_drift(campaign.dwells()))
     maps = tried(
         "maps when new, now and at the end",

@@ -31,7 +31,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
     return {
         "signal": SIGNALS[worst],
         "lead": found.lead(),
-        "more": [found.of_new()] if found.of_new() else [],
+        "more": [*filter(None, [found.of_new()]), *found.answers()],
         "next": [sentence(each) for each in (*found.advice, found.planning()) if each],
         "heads": ["Specimen", "State", "Failure mode", f"Expected{of_unit}", f"90 % interval{of_unit}"],
         "rows": [_row(specimens[name]) for name in ordered[:_SHOWN]],
@@ -39,6 +39,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
         "age_unit": found.age_unit,
         "end": _end([specimens[name] for name in ordered[:_SHOWN]], last),
         "b10": None if found.b10 is None else found.b10.age.to_dict(),
+        "failing": None if found.followed_failing is None else found.followed_failing.to_dict(),
     }
 
 

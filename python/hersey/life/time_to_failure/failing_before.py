@@ -1,0 +1,122 @@
+"""What fails before a stated age: the share of new specimens, and how many of those followed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from hersey.arrays import FloatArray, IntArray
+from hersey.life.growth.limit_ages import FAILED, FAR, RUNNING, Interval, interval, percent, rounded
+from hersey.life.time_to_failure.ageing import after
+from hersey.life.time_to_failure.way import FittedWay
+from hersey.result import Means, Record
+
+
+@dataclass(frozen=True)
+class ShareFailing(Record):
+    """Whether at most a share of new specimens fails before an age.
+
+    It is decided where the probability is 95 % or more, so that the interval lies on one side of the share.
+    """
+
+    age: float
+    allowed: Annotated[float, Means("share that may fail before the age")]
+    share: Annotated[Interval, Means("share of new specimens that fails before the age")]
+    answer: Annotated[
+        Literal["yes", "no", "not yet decided"], Means("whether at most the allowed share fails")
+    ]
+    shown: Annotated[float, Means("greatest age that the runs show: three times the age followed")]
+
+    def words(self, age_unit: str) -> str:
+        """Return the answer as a sentence."""
+        unit = f" {age_unit}" if age_unit else ""
+        before, allowed = f"before {rounded(self.age, 6)}{unit}", f"{100.0 * self.allowed:.3g} %"
+        if self.age > self.shown:
+            ends = f"{percent(self.share.low)} or more of new specimens fail {before} (95 %)"
+        else:
+            low, high = percent(self.share.low), percent(self.share.high)
+            value = percent(self.share.value)
+            ends = f"{value} of new specimens fail {before} (90 %: {low} to {high})"
+        if self.answer == "yes":
+            return f"Yes, at most {allowed} fail: {ends}."
+        if self.answer == "no":
+            return f"No, more than {allowed} fail: {ends}."
+        return f"Whether at most {allowed} fail is not yet decided: {ends}."
+
+    def question(self, age_unit: str) -> str:
+        """Return what is to be decided."""
+        unit = f" {age_unit}" if age_unit else ""
+        share = f"{100.0 * self.allowed:.3g} %"
+        return f"whether at most {share} of new specimens fail before {rounded(self.age, 6)}{unit}"
+
+    def advice(self, age_unit: str) -> str:
+        """Return how far to follow the specimens where the age is later than runs show; else empty."""
+        if self.age <= self.shown or self.answer == "no":
+            return ""
+        least = after(self.age / FAR, age_unit)
+        return (
+            f"follow the specimens to {least} to decide {self.question(age_unit)}: runs show ages up to "
+            f"{FAR:g} times that followed"
+        )
+
+
+@dataclass(frozen=True)
+class FollowedFailing(Record):
+    """How many of the specimens followed fail before an age, those that have failed included."""
+
+    age: float
+    specimens: Annotated[int, Means("number of specimens")]
+    failed: Annotated[Interval, Means("number that has failed by that age")]
+
+    def sentence(self, age_unit: str) -> str:
+        """Return the number and its interval as a sentence."""
+        of = "the specimen" if self.specimens == 1 else f"the {self.specimens} specimens"
+        low, value, high = (f"{each:.0f}" for each in (self.failed.low, self.failed.value, self.failed.high))
+        age = f"{rounded(self.age, 6)} {age_unit}".strip()
+        ends = "" if low == high else f" (90 %: {low} to {high})"
+        return f"Of {of}, {value} {'fails' if value == '1' else 'fail'} before {age}{ends}."
+
+
+def failing_share(first: FloatArray, age: float, allowed: float, followed: float) -> ShareFailing:
+    """Return whether at most a share of new specimens fails before an age.
+
+    Parameters
+    ----------
+    first
+        Draws of the ages of first failure of new specimens, (draws, specimens).
+    followed
+        Greatest age of the runs: beyond three times that more may fail than the growth laws say.
+    """
+    shown = FAR * followed
+    drawn = (first <= min(age, shown)).mean(axis=1)
+    share = interval(drawn)
+    if age > shown:
+        share = Interval(interval((first <= age).mean(axis=1)).value, share.low, 1.0)
+        certain = 0.0  # that few fail is not shown so late
+    else:
+        certain = float((drawn <= allowed).mean())
+    more = float((drawn > allowed).mean())
+    answer: Literal["yes", "no", "not yet decided"] = "not yet decided"
+    if certain >= FAILED or more >= 1.0 - RUNNING:
+        answer = "yes" if certain >= FAILED else "no"
+    return ShareFailing(age, allowed, share, answer, shown)
+
+
+def failing_of_followed(
+    ending: Sequence[FittedWay], order: IntArray, age: float | None, followed: float
+) -> FollowedFailing | None:
+    """Return how many of the specimens followed have failed by an age, by any mode; None without an age.
+
+    ``order`` is as from `joint_order`: what all specimens share is common to a draw.
+    """
+    if age is None:
+        return None
+    first = np.min([each.ages[order[:, m]] for m, each in enumerate(ending)], axis=0)
+    shown = FAR * followed
+    count = interval((first <= min(age, shown)).sum(axis=1).astype(float))
+    if age > shown:
+        count = Interval(count.value, count.low, float(first.shape[1]))
+    return FollowedFailing(age, first.shape[1], count)
