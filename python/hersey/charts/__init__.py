@@ -38,6 +38,7 @@ trend            friction against age at one speed
 drift            what moved with age, a panel per quantity
 film_life        the film of units that age, and the layer of oil that feeds it
 growth           growth with age, and the ages at a limit
+replacement      cost against the age of a planned replacement
 time_to_failure  failure modes against age
 other_uses       the ages in other uses of the machine
 ===============  ==========================================================================

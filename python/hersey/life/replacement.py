@@ -243,9 +243,10 @@ def replacement_age(law: FailureLaw, cost_of_failure: float) -> Replacement:
 
     Examples
     --------
+    >>> from hersey import weibull
     >>> law = weibull([54, 187, 216, 240, 244, 335, 361, 373, 375, 386, 500], [True] * 10 + [False])
     >>> round(replacement_age(law, 10.0).age.value)
-    123
+    120
     """
     cost_ratio(cost_of_failure)
     law.refuse_unknown()

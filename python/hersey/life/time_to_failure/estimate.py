@@ -304,7 +304,7 @@ def time_to_failure(
     InsufficientDataError
         If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
-    asked = questions_of(until, share, cost_of_failure, indicators.runs.age_unit)
+    asked = questions_of(indicators.runs.age_unit, until, share, cost_of_failure)
     fitted, warnings = [], list(indicators.warnings)
     for i, each in enumerate(indicators.each):
         try:

@@ -14,6 +14,9 @@ from hersey.life.time_to_failure.ageing import after
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
 
+#: Share that is worth naming as the least.
+_SEEN = 0.01
+
 
 @dataclass(frozen=True)
 class ShareFailing(Record):
@@ -34,12 +37,12 @@ class ShareFailing(Record):
         """Return the answer as a sentence."""
         unit = f" {age_unit}" if age_unit else ""
         before, allowed = f"before {rounded(self.age, 6)}{unit}", f"{100.0 * self.allowed:.3g} %"
+        low, value, high = map(percent, (self.share.low, self.share.value, self.share.high))
+        ends = f"{value} of new specimens fail {before} (90 %: {low} to {high})"
         if self.age > self.shown:
-            ends = f"{percent(self.share.low)} or more of new specimens fail {before} (95 %)"
-        else:
-            low, high = percent(self.share.low), percent(self.share.high)
-            value = percent(self.share.value)
-            ends = f"{value} of new specimens fail {before} (90 %: {low} to {high})"
+            ends = f"{low} or more of new specimens fail {before} (95 %)"
+            if self.share.low < _SEEN:
+                ends = f"how many new specimens fail {before} is unknown"
         if self.answer == "yes":
             return f"Yes, at most {allowed} fail: {ends}."
         if self.answer == "no":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypedDict
 
 from hersey.errors import ParameterError, Setting, UnitError
 from hersey.life.age import Age
@@ -10,6 +11,24 @@ from hersey.life.replacement import cost_ratio
 
 #: Greatest ratio of costs: beyond, the best age depends on less than a hundredth of the specimens.
 _MOST, _WHY = 100.0, "as a life test does not show when the first hundredth of new specimens fails"
+
+
+class Asked(TypedDict, total=False):
+    """What a life test is to decide, each by its name.
+
+    Parameters
+    ----------
+    until
+        Age that specimens should reach, e.g. "250000 pages": the next runs are those that show best which do.
+    share
+        Share of new specimens that may fail before that age, e.g. 0.05.
+    cost_of_failure
+        Cost of a failure in service over that of a planned replacement, e.g. 10: when to replace.
+    """
+
+    until: str | float | None
+    share: float | None
+    cost_of_failure: float | None
 
 
 @dataclass(frozen=True)
@@ -22,7 +41,10 @@ class Questions:
 
 
 def questions_of(
-    until: str | float | None, share: float | None, cost_of_failure: float | None, unit: str
+    unit: str,
+    until: str | float | None = None,
+    share: float | None = None,
+    cost_of_failure: float | None = None,
 ) -> Questions:
     """Return what was asked, in the unit of the runs.
 
