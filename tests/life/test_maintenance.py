@@ -13,6 +13,7 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.charts.growth import growth_chart
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
@@ -82,6 +83,25 @@ def test_growth_begins_anew_from_a_re_greasing(monkeypatch: pytest.MonkeyPatch) 
     # without the event the same runs show a slower growth, and nothing of the truth
     without = time_to_failure(Indicators(runs(), (torque(300.0),)))
     assert {e.unit: e.age for e in without.units}["F3"].age.value > 1.2 * ends["F3"].age.value
+
+
+def test_the_chart_shows_the_age_of_the_specimen_and_a_mark_at_the_event(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fewer(monkeypatch)
+    (mode,) = time_to_failure(Indicators(runs(GREASED), (torque(300.0),))).modes
+    of_f3 = [each for each in mode.stretches if each.unit == "F3"]
+    assert [(each.name, each.begun) for each in of_f3] == [("F3 before 300", 0.0), ("F3", 300.0)]
+    drawn = growth_chart(mode.growth, ages=mode.ages, stretches=mode.stretches).to_dict()
+    panels = {panel["title"]["text"]: panel for row in drawn["vconcat"] for panel in row["hconcat"]}
+    assert list(panels) == [f"F{i}" for i in range(1, 7)]
+    values = [layer["data"]["values"] for layer in panels["F3"]["layer"]]
+    seen = [row["age"] for rows in values for row in rows if row.keys() == {"age", "value"}]
+    assert seen == AGES.tolist()
+    assert [{"age": 300.0}] in values
+    curves = [[row["age"] for row in rows] for rows in values if len(rows) > 7 and "median" in rows[0]]
+    assert max(curves[0]) <= 300.0 == min(curves[-1])
+    assert time_to_failure(Indicators(runs(), (torque(300.0),))).modes[0].stretches == ()
 
 
 def test_damage_goes_back_with_new_parts_alone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -26,7 +26,9 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
     with unchecked():
         made = {"ends": chart_of(found)}
         for number, mode in enumerate(likely[:_GROWN], 1):
-            made[f"growth_{number}"] = chart_of(mode.growth, ages=mode.ages, si=mode.si)
+            made[f"growth_{number}"] = chart_of(
+                mode.growth, ages=mode.ages, si=mode.si, stretches=mode.stretches
+            )
         for name in ("drift", "film", "maps"):
             if (part := getattr(answer, name)) is not None:
                 made[name] = chart_of(part)

@@ -62,11 +62,9 @@ def _expected(each: SpecimenEnd) -> str:
     age = each.age.age
     if each.state == "unclear":
         return f"before {rounded(age.high)}" if math.isfinite(age.high) else "unknown"
-    far = FAR * each.age.last if each.age.last > 0.0 else math.inf
-    if math.isinf(age.value) and math.isfinite(age.low):
+    beyond = math.isinf(age.value) or age.value > FAR * each.age.last > 0.0
+    if beyond and math.isfinite(age.low):
         return f"after {rounded(age.low)}"
-    if age.value > far:
-        return f"after {rounded(min(age.low, far))}"
     return rounded(age.value) if math.isfinite(age.value) else "unknown"
 
 
