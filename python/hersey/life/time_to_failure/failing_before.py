@@ -25,7 +25,7 @@ class ShareFailing(Record):
     It is decided where the probability is 95 % or more, so that the interval lies on one side of the share.
     """
 
-    age: float
+    age: Annotated[float, Means("the age that is asked for")]
     allowed: Annotated[float, Means("share that may fail before the age")]
     share: Annotated[Interval, Means("share of new specimens that fails before the age")]
     answer: Annotated[
@@ -70,7 +70,7 @@ class ShareFailing(Record):
 class FollowedFailing(Record):
     """How many of the specimens followed fail before an age, those that have failed included."""
 
-    age: float
+    age: Annotated[float, Means("the age that is asked for")]
     specimens: Annotated[int, Means("number of specimens")]
     failed: Annotated[Interval, Means("number that has failed by that age")]
 
