@@ -44,13 +44,15 @@ def test_a_share_is_counted_in_each_draw() -> None:
     assert few.words("").endswith("fail before 500 (90 %: 2 % to 47 %).")
 
 
-def test_beyond_three_times_the_age_followed_no_share_is_small() -> None:
+def test_far_beyond_the_age_followed_no_share_is_small() -> None:
     first = np.where(np.arange(200) < 20, 400.0, 800.0) * np.ones((100, 1))
     late = failing_share(first, 700.0, 0.2, followed=200.0)
     assert (late.answer, late.share.low, late.share.high) == ("not yet decided", 0.1, 1.0)
     assert "10 % or more of new specimens fail before 700 pages (95 %)" in late.words("pages")
-    assert late.advice("pages").startswith("follow the specimens to 240 pages to decide whether at most 20 %")
+    assert late.advice("pages").startswith("follow the specimens to 400 pages to decide whether at most 20 %")
     assert failing_share(first, 700.0, 0.05, followed=200.0).answer == "no"
+    assert failing_share(first, 360.0, 0.05, followed=200.0).answer == "not yet decided"
+    assert failing_share(first, 340.0, 0.05, followed=200.0).answer == "yes"
 
 
 def test_a_run_leaves_the_risk_of_the_normal_law() -> None:
@@ -111,7 +113,7 @@ def test_a_replacement_is_that_of_the_ages_and_a_run_narrows_it() -> None:
     asked = found(4, np.array([0.0, 150.0, 300.0]), cost_of_failure=10.0)
     best = asked.replacement
     assert best is not None
-    assert (best.unit, best.until, best.pays) == ("pages", 900.0, "not yet decided")
+    assert (best.unit, best.until, best.pays) == ("pages", 525.0, "not yet decided")
     (run,) = asked.deciding_runs
     assert run.question == "replacement"
     assert run.units

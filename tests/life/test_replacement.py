@@ -94,6 +94,11 @@ def test_draws_of_uniform_lives_give_the_age_in_closed_form() -> None:
     assert (found.age.low, found.age.high) == pytest.approx((910.0 / 3.0, 1090.0 / 3.0), rel=2e-3)
     # C(1/3) = (1 + 12 / 3) / (1/3 - 1/18) = 18 of 26.
     assert found.saving.value == pytest.approx(1.0 - 18.0 / 26.0, abs=1e-3)
+    late = best_replacement(
+        ages, drawn, uniform(1000.0, ages, 13.0), cost_of_failure=13.0, unit="pages", until=300.0
+    )
+    assert late.pays == "not yet decided"
+    assert "the age of least cost, 333 pages, is later than the runs show (300 pages), if" in late.summary()
     assert found.pays == "yes"
     assert "per page than running to failure" in found.summary()
 

@@ -56,7 +56,9 @@ class Replacement(Result):
     ]
     age: Annotated[Interval, Means("age of least cost; null where no planned replacement pays")]
     saving: Annotated[Interval, Means("share of the cost saved at that age; 0 without such an age")]
-    until: Annotated[float | None, Means("greatest age that is judged; null if the law holds for all ages")]
+    until: Annotated[
+        float | None, Means("greatest age that is judged, 1.75 times that followed; null for a law")
+    ]
     ages: Annotated[FloatArray, Means("ages of replacement", shape="(n,)")]
     cost: Annotated[FloatArray, Means("cost per unit of age, over that of running to failure", shape="(n,)")]
     cost_low: Annotated[FloatArray, Means(shape="(n,)")]
@@ -75,14 +77,15 @@ class Replacement(Result):
                 f"{_percent(self.saving.value)} less{one} than running to failure ({self._level}: "
                 f"{_percent(self.saving.low)} to {_percent(self.saving.high)}){self._if}"
             )
+        unknown = "whether a planned replacement pays is not yet decided"
         if math.isinf(self.age.value):
-            return f"whether a planned replacement pays is not yet decided{self._if}"
+            return f"{unknown}{self._if}"
+        if self.until is not None and self.age.value > self.until:
+            late = f"{rounded(self.age.value)}{of_unit}, is later than the runs show"
+            return f"{unknown}: the age of least cost, {late} ({rounded(self.until)}{of_unit}){self._if}"
         saved = (self.saving.low, self.saving.high)
         low, high = (f"{_percent(abs(each))} {'more' if each < 0 else 'less'}" for each in saved)
-        return (
-            f"whether a planned replacement pays is not yet decided. At {rounded(self.age.value)}{of_unit} "
-            f"it costs {low} to {high}{one} than running to failure ({self._level}){self._if}"
-        )
+        return f"{unknown}. At {rounded(self.age.value)}{of_unit} it costs {low} to {high}{one} than running to failure ({self._level}){self._if}"
 
     @property
     def _if(self) -> str:
@@ -163,7 +166,7 @@ def best_replacement(
     decided: Literal["yes", "no", "not yet decided"] = "not yet decided"
     if (own < math.inf).mean() <= tails[0]:
         decided, best = "no", math.inf
-    elif math.isfinite(best) and (saved[1:] > 0.0).mean() >= tails[1]:
+    elif best <= (math.inf if until is None else until) and (saved[1:] > 0.0).mean() >= tails[1]:
         decided = "yes"
     saving = saved[0], *np.quantile(saved[1:], tails)
     low, high = np.quantile(own, tails, method="inverted_cdf")

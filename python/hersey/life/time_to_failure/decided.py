@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.growth.limit_ages import FAR
+from hersey.life.growth.limit_ages import FAR, SURE
 from hersey.life.replacement import Replacement, best_replacement, costs, places
 from hersey.life.time_to_failure.deciding_run import DecidingRun, Question, deciding_run
 from hersey.life.time_to_failure.failing_before import ShareFailing, failing_share
@@ -51,7 +51,7 @@ def decided(
             runs.append(deciding_run(_of_share(first, asked.until, asked.share), *draws))
     if asked.cost_of_failure is not None:
         unit = ending[0].mode.ages.age_unit
-        replacement, question = _replacement(first, FAR * followed, asked.cost_of_failure, unit)
+        replacement, question = _replacement(first, followed, asked.cost_of_failure, unit)
         run = deciding_run(question, *draws)
         if replacement.pays == "not yet decided" or (run is not None and run.helps):
             runs.append(run)
@@ -66,20 +66,26 @@ def _of_share(first: FloatArray, age: float, allowed: float) -> Question:
 
 
 def _replacement(
-    first: FloatArray, until: float, cost_of_failure: float, unit: str
+    first: FloatArray, followed: float, cost_of_failure: float, unit: str
 ) -> tuple[Replacement, Question]:
     """The age of least cost; in each draw an age loses what it costs more than the best of that draw."""
-    ages = places(until)
+    end = FAR * followed
+    ages = places(end)
     survived = np.stack([(first > age).mean(axis=1) for age in ages], axis=1)
     lived = np.stack([np.minimum(first, age).mean(axis=1) for age in ages], axis=1)
     cost = costs(survived, lived, cost_of_failure)
     relative = cost / cost[:, -1:]
     found = best_replacement(
-        ages, relative, relative.mean(axis=0), cost_of_failure=cost_of_failure, unit=unit, until=until
+        ages,
+        relative,
+        relative.mean(axis=0),
+        cost_of_failure=cost_of_failure,
+        unit=unit,
+        until=SURE * followed,
     )
     loss = relative - relative.min(axis=1, keepdims=True)
-    goal = min(found.age.value, until)
-    return found, Question("replacement", loss, goal, _failing_between(first, until))
+    goal = min(found.age.value, end)
+    return found, Question("replacement", loss, goal, _failing_between(first, end))
 
 
 def _failing_between(first: FloatArray, until: float) -> FloatArray:

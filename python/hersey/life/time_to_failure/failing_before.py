@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.growth.limit_ages import FAILED, FAR, RUNNING, Interval, interval, percent, rounded
+from hersey.life.growth.limit_ages import FAILED, FAR, RUNNING, SURE, Interval, interval, percent, rounded
 from hersey.life.time_to_failure.ageing import after
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
@@ -31,7 +31,9 @@ class ShareFailing(Record):
     answer: Annotated[
         Literal["yes", "no", "not yet decided"], Means("whether at most the allowed share fails")
     ]
-    shown: Annotated[float, Means("greatest age that the runs show: three times the age followed")]
+    shown: Annotated[
+        float, Means("age before which runs can show that few fail: 1.75 times the age followed")
+    ]
 
     def words(self, age_unit: str) -> str:
         """Return the answer as a sentence."""
@@ -59,10 +61,10 @@ class ShareFailing(Record):
         """Return how far to follow the specimens where the age is later than runs show; else empty."""
         if self.age <= self.shown or self.answer == "no":
             return ""
-        least = after(self.age / FAR, age_unit)
+        least = after(self.age / SURE, age_unit)
         return (
             f"follow the specimens to {least} to decide {self.question(age_unit)}: runs show ages up to "
-            f"{FAR:g} times that followed"
+            f"{SURE:g} times that followed"
         )
 
 
@@ -91,16 +93,13 @@ def failing_share(first: FloatArray, age: float, allowed: float, followed: float
     first
         Draws of the ages of first failure of new specimens, (draws, specimens).
     followed
-        Greatest age of the runs: beyond three times that more may fail than the growth laws say.
+        Greatest age of the runs: what fails beyond 1.75 times that may be more, beyond 3 times that unknown.
     """
-    shown = FAR * followed
-    drawn = (first <= min(age, shown)).mean(axis=1)
-    share = interval(drawn)
+    shown = SURE * followed
+    drawn = (first <= min(age, FAR * followed)).mean(axis=1)
+    share, certain = interval(drawn), float((drawn <= allowed).mean())
     if age > shown:
-        share = Interval(interval((first <= age).mean(axis=1)).value, share.low, 1.0)
-        certain = 0.0  # that few fail is not shown so late
-    else:
-        certain = float((drawn <= allowed).mean())
+        share, certain = Interval(share.value, share.low, 1.0), 0.0
     more = float((drawn > allowed).mean())
     answer: Literal["yes", "no", "not yet decided"] = "not yet decided"
     if certain >= FAILED or more >= 1.0 - RUNNING:
@@ -118,8 +117,7 @@ def failing_of_followed(
     if age is None:
         return None
     first = np.min([each.ages[order[:, m]] for m, each in enumerate(ending)], axis=0)
-    shown = FAR * followed
-    count = interval((first <= min(age, shown)).sum(axis=1).astype(float))
-    if age > shown:
+    count = interval((first <= min(age, FAR * followed)).sum(axis=1).astype(float))
+    if age > SURE * followed:
         count = Interval(count.value, count.low, float(first.shape[1]))
     return FollowedFailing(age, first.shape[1], count)
