@@ -85,7 +85,8 @@ class Replacement(Result):
             return f"{unknown}: the age of least cost, {late} ({rounded(self.until)}{of_unit}){self._if}"
         saved = (self.saving.low, self.saving.high)
         low, high = (f"{_percent(abs(each))} {'more' if each < 0 else 'less'}" for each in saved)
-        return f"{unknown}. At {rounded(self.age.value)}{of_unit} it costs {low} to {high}{one} than running to failure ({self._level}){self._if}"
+        cost = f"it costs {low} to {high}{one} than running to failure ({self._level})"
+        return f"{unknown}. At {rounded(self.age.value)}{of_unit} {cost}{self._if}"
 
     @property
     def _if(self) -> str:
