@@ -14,6 +14,7 @@ from hersey.errors import ParameterError
 from hersey.life.time_to_failure.deciding_run import DecidingRun, loss_after, loss_after_new
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.life.time_to_failure.failing_before import failing_share
+from tests.bare_numbers import bare
 from tests.life.shipped import fewer
 from tests.life.test_time_to_failure import AGE, NAMES, RATE, indicator, linear, of, warned
 
@@ -100,12 +101,23 @@ def test_the_share_is_that_of_the_curve_and_what_would_decide_it_is_said() -> No
 
 
 def test_what_fails_of_the_specimens_followed() -> None:
-    count = found(until="900 pages").followed_failing
+    asked = found(until="900 pages")
+    count = asked.followed_failing
     assert count is not None
     assert (count.age, count.specimens) == (900.0, 6)
     assert count.failed.low <= 3 <= count.failed.high  # F6 at 333, F5 at 833, F4 at 909
-    assert found(until="400 pages").of_followed() == "Of the 6 specimens, 1 fails before 400 pages."
+    assert found(until="400 pages").of_followed() == "1 of 6 specimens fails before 400 pages."
     assert found().of_followed() == ""
+    low, high = (f"{each:g}" for each in (count.failed.low, count.failed.high))
+    assert f" of 6 specimens fail before 900 pages (90 %: {low} to {high} specimens)." in asked.of_followed()
+    assert (
+        bare(
+            "\n".join(
+                [asked.of_followed(), *found(until="900 pages", share=0.3, cost_of_failure=9).answers()]
+            )
+        )
+        == []
+    )
 
 
 def test_a_replacement_is_that_of_the_ages_and_a_run_narrows_it() -> None:

@@ -78,11 +78,11 @@ class FollowedFailing(Record):
 
     def sentence(self, age_unit: str) -> str:
         """Return the number and its interval as a sentence."""
-        of = "the specimen" if self.specimens == 1 else f"the {self.specimens} specimens"
+        of = "specimen" if self.specimens == 1 else "specimens"
         low, value, high = (f"{each:.0f}" for each in (self.failed.low, self.failed.value, self.failed.high))
-        age = f"{rounded(self.age, 6)} {age_unit}".strip()
-        ends = "" if low == high else f" (90 %: {low} to {high})"
-        return f"Of {of}, {value} {'fails' if value == '1' else 'fail'} before {age}{ends}."
+        fail, age = "fails" if value == "1" else "fail", f"{rounded(self.age, 6)} {age_unit}".strip()
+        ends = "" if low == high else f" (90 %: {low} to {high} specimens)"
+        return f"{value} of {self.specimens} {of} {fail} before {age}{ends}."
 
 
 def failing_share(first: FloatArray, age: float, allowed: float, followed: float) -> ShareFailing:
