@@ -11,6 +11,7 @@ import pytest
 from scipy.stats import binom
 
 from hersey.errors import ParameterError
+from hersey.life.time_to_failure.decided import _replacement
 from hersey.life.time_to_failure.deciding_run import DecidingRun, loss_after, loss_after_new
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.life.time_to_failure.failing_before import failing_share
@@ -140,6 +141,19 @@ def test_a_replacement_is_that_of_the_ages_and_a_run_narrows_it() -> None:
     plain = asked.to_dict()
     assert json.loads(json.dumps(plain, allow_nan=False)) == plain
     assert asked.to_dict() == found(4, np.array([0.0, 150.0, 300.0]), cost_of_failure=10.0).to_dict()
+
+
+def test_ages_spread_evenly_over_a_life_are_replaced_at_a_third_of_it() -> None:
+    """As in closed form at a cost of 13, which saves 8 of 26; all lives of a draw are longer by a factor."""
+    lives = np.linspace(900.0, 1100.0, 101)
+    first = lives[:, None] * (np.arange(512) + 0.5) / 512
+    best, question = _replacement(first, 500.0, 13.0, "pages")
+    assert best.age.value == pytest.approx(1000.0 / 3.0, rel=0.02)
+    assert (best.age.low, best.age.high) == pytest.approx((303.0, 363.0), rel=0.03)
+    assert best.saving.value == pytest.approx(8.0 / 26.0, abs=0.01)
+    assert (best.pays, best.until) == ("yes", 875.0)
+    assert question.loss.min(axis=1) == pytest.approx(0.0, abs=1e-12)
+    assert question.failing.sum(axis=1) == pytest.approx(1.0)
 
 
 def test_questions_change_nothing_else() -> None:
