@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import integrate, stats
 
 import hersey
 from hersey.arrays import FloatArray
@@ -20,6 +20,7 @@ from hersey.life.failures.fit import age_held, fitted
 from hersey.life.failures.likelihood import Observed, log_between
 from hersey.life.failures.maximum import maximum
 from hersey.life.failures.positions import positions, steps
+from hersey.life.failures.replicates import drawn
 from hersey.life.failures.test_plan import specimens_for
 from tests.conftest import ROOT
 
@@ -63,6 +64,14 @@ def test_failure_modes_at_several_stresses_are_one_law_with_a_warning() -> None:
     assert law.modes == ()
     (told,) = [each for each in law.warnings if each.kind == "failure modes under stress"]
     assert set(told.values["modes"].split(", ")) == {"wear", "seizure"}
+    alone = 0.0
+    for own in (ages[:6], ages[6:]):
+        shape, _, scale = stats.weibull_min.fit(own, floc=0)
+        alone += stats.weibull_min.logpdf(own, shape, scale=scale).sum()
+    assert law.acceleration is not None
+    assert law.log_likelihood is not None
+    ratio = 2 * (alone - law.log_likelihood)
+    assert law.acceleration.same_shape == pytest.approx(stats.chi2.sf(ratio, 4 - 3), rel=1e-4)
 
 
 @pytest.mark.parametrize("name", DISTRIBUTIONS)
@@ -86,6 +95,13 @@ def test_laws_agree_with_scipy(name: str) -> None:
     )
 
 
+def test_a_late_interval_keeps_its_digits() -> None:
+    """What fails between two ages that a share of exp(-60) outlives."""
+    low, high = 60 ** (1 / 1.7), 61 ** (1 / 1.7)
+    between = log_between(WEIBULL, np.log([low]), np.log([high]), np.array(1.7))
+    assert between == pytest.approx([-60 + math.log(-math.expm1(-1))], rel=1e-9)
+
+
 def test_an_inspection_of_no_width_is_an_exact_age() -> None:
     ages = np.array([54.0, 187, 216, 240, 500])
     failed = np.array([True, True, True, True, False])
@@ -98,14 +114,14 @@ def test_an_inspection_of_no_width_is_an_exact_age() -> None:
 def test_calibrated_bounds_are_exact_where_a_test_ends_at_a_failure() -> None:
     """In 2,000 samples of 10 that end at the sixth failure the roots of B10 lie within in 90 %."""
     truth, samples = np.array(math.log((-math.log(0.9)) ** 0.5)), 2000
-    drawn = np.log(np.sort(np.random.default_rng(7).weibull(2.0, (samples, 10)), axis=1))
-    ages = np.exp(drawn[0, [*range(6), 5]])
+    samples_of = np.log(np.sort(np.random.default_rng(7).weibull(2.0, (samples, 10)), axis=1))
+    ages = np.exp(samples_of[0, [*range(6), 5]])
     count = np.array([1, 1, 1, 1, 1, 1, 4])
     fit = fitted(WEIBULL, hersey.Failures(ages, np.append(ages[:6], np.inf), count))
     low, high = fit._roots(np.array([0.1]), 0.9, age_held, 0.0)
     own = Observed(
-        exact=drawn[:, :6],
-        right=drawn[:, 5:6],
+        exact=samples_of[:, :6],
+        right=samples_of[:, 5:6],
         exact_count=np.ones(6),
         right_count=np.array([4.0]),
         exact_stress=np.zeros(6),
@@ -118,6 +134,20 @@ def test_calibrated_bounds_are_exact_where_a_test_ends_at_a_failure() -> None:
     roots = np.sign(at[:, 0] - truth) * np.sqrt(2 * np.maximum(best - of_truth, 0))
     assert ((low <= roots) & (roots <= high)).mean() == pytest.approx(0.9, abs=0.02)
     assert (roots < low).mean() == pytest.approx(0.05, abs=0.015)
+
+
+def test_drawn_specimens_are_looked_at_as_long_as_the_real_ones() -> None:
+    """Five are withdrawn after the look at 5, ten others are looked at until 10."""
+    low, high = np.array([0.0, 5, 10, 5]), np.array([5.0, 10, np.inf, np.inf])
+    looked_at = hersey.Failures(low, high, np.array([3, 3, 4, 5]))
+    truth = (math.log(8.0), 2.0, 0.0)
+    of = drawn(WEIBULL, looked_at, np.zeros(4), truth, 4000, np.random.default_rng(1))
+    assert np.exp(of.high[0]).tolist() == pytest.approx([5, np.inf, 5, 10, np.inf])
+    assert set(of.between_count[:, :2].sum(axis=1)) == {5.0}
+    assert set(of.between_count[:, 2:].sum(axis=1)) == {10.0}
+    outlive = np.exp(-((np.array([0, 5, 10]) / 8) ** 2))
+    expected = [5 * (1 - outlive[1]), 5 * outlive[1], *(-10 * np.diff(outlive)), 10 * outlive[2]]
+    assert of.between_count.mean(axis=0) == pytest.approx(expected, abs=0.1)
 
 
 def test_failure_modes_are_fitted_apart_and_joined() -> None:
@@ -161,6 +191,7 @@ def test_turnbull_is_kaplan_and_meier_of_exact_ages() -> None:
     by_product = 1 - np.cumprod([1 - first, 1 - second, 1 - third])
     assert shares == pytest.approx(by_product, rel=1e-6)
     mixed = hersey.Failures(np.array([10.0, 5, 20]), np.array([10.0, 12, 20]), np.ones(3, dtype=int))
+    assert dict(zip(*(each.tolist() for each in steps(mixed)), strict=True))[10] == pytest.approx(2 / 3)
     assert steps(mixed)[1][-1] == pytest.approx(1.0)
 
 
@@ -178,6 +209,20 @@ def test_how_well_a_law_fits() -> None:
     assert law.goodness is not None
     assert law.goodness.statistic == pytest.approx(anderson(ages, *numbers(law)), rel=1e-9)
     assert law.goodness.p_value > 0.3
+    withdrawn = np.isin(np.arange(12), [0, 3, 4, 8, 11])
+    law = hersey.weibull(ages, ~withdrawn)
+    assert law.goodness is not None
+    failed, left = (
+        ages[~withdrawn],
+        np.array([11.0, 10, 7, 6, 5, 3, 2]),
+    )  # of 12, the first was withdrawn early
+    shares = np.append(0.0, 1 - np.cumprod(1 - 1 / left))
+    ends = np.append(0.0, stats.weibull_min.cdf(failed, numbers(law)[0], scale=numbers(law)[1]))
+    parts = [
+        integrate.quad(lambda f, share=share: (share - f) ** 2 / (f * (1 - f)), begin, end)[0]
+        for share, begin, end in zip(shares[:-1], ends[:-1], ends[1:], strict=True)
+    ]
+    assert law.goodness.statistic == pytest.approx(11 * sum(parts), rel=1e-6)
     split = np.concatenate([np.linspace(1, 1.2, 8), np.linspace(100, 120, 8)])
     bad = hersey.weibull(split, np.ones(16, dtype=bool))
     assert bad.goodness is not None
@@ -224,6 +269,12 @@ def test_a_fleet(monkeypatch: pytest.MonkeyPatch) -> None:
     few = count // 25
     apart = hersey.fleet_forecast(law, np.repeat(ages, few), 50.0)
     assert apart.specimens == 16
+    (possible,) = law.draws
+    kept = np.exp(
+        few
+        @ (possible.log_survival(ages[:, None] + 50) - possible.log_survival(np.maximum(ages, 1e-9)[:, None]))
+    )
+    assert apart.none == pytest.approx(kept.mean(), abs=0.03)
     assert apart.expected[-1] == pytest.approx(found.expected[-1] / 25, rel=1e-9)
 
 
@@ -236,6 +287,9 @@ def test_a_demonstration_is_the_least_that_convinces() -> None:
         enough, fewer = (stats.binom.cdf(each.allowed, each.specimens - less, failed) for less in (0, 1))
         assert enough <= 0.1 < fewer
     assert specimens_for(1.0, 0, 1.0, 0.10, 0.95) == 29
+    ages = -np.log1p(-(np.arange(1, 4) - 0.5) / 5)  # half of five fail; each bound at 90 %
+    half = hersey.weibull([*ages, ages[-1], ages[-1]], [True] * 3 + [False] * 2, level=0.8).b_life(0.10)
+    assert plan.precision[0].half_fail ** 2 == pytest.approx(half.high / half.low, rel=1e-6)
     ratios = [each.all_fail for each in plan.precision]
     assert all(after < before for before, after in itertools.pairwise(ratios))
 

@@ -281,14 +281,19 @@ def test_an_activation_of_nelson() -> None:
     assert sample.stress is not None
     ages, inverse, failed = np.log(sample.low), 1 / sample.stress, np.isfinite(sample.high)
 
-    def worth(at: FloatArray) -> float:
-        z = (ages - at[0] - 1e4 * at[1] * (inverse - 0.0022)) / math.exp(at[2])
-        each = np.where(failed, stats.norm.logpdf(z) - at[2], stats.norm.logsf(z))
+    def worth(at: FloatArray, of_use: float | None = None) -> float:
+        u, b, s = at if of_use is None else (of_use, *at)
+        z = (ages - u - 1e4 * b * (inverse - 1 / (130 + 273.15))) / math.exp(s)
+        each = np.where(failed, stats.norm.logpdf(z) - s, stats.norm.logsf(z))
         return -float(sample.count @ each)
 
-    start = [8.0, 0.99, -0.5]
-    best = optimize.minimize(worth, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    near = {"xatol": 1e-9, "fatol": 1e-12}
+    best = optimize.minimize(worth, [10.7, 0.99, -0.5], method="Nelder-Mead", options=near)
     assert (numbers(law)[0], slope) == pytest.approx((math.exp(best.x[2]), 1e4 * best.x[1]), rel=1e-6)
+    b50 = law.b_lives[1]
+    for age in (b50.low, b50.high):
+        held = optimize.minimize(worth, best.x[1:], (math.log(age),), method="Nelder-Mead", options=near)
+        assert 2 * (held.fun - best.fun) == pytest.approx(stats.chi2.ppf(0.90, 1), abs=1e-5)
 
 
 @pytest.mark.parametrize(
