@@ -57,7 +57,7 @@ def test_an_activation_energy_is_found_again() -> None:
 
 def test_failure_modes_at_several_stresses_are_one_law_with_a_warning() -> None:
     kelvin = np.repeat([330.0, 350.0], 6)
-    ages = np.concatenate([np.arange(60.0, 120.0, 10.0), np.arange(30.0, 60.0, 5.0)])
+    ages = np.array([60.0, 70, 80, 90, 100, 110, 12, 30, 35, 40, 45, 70])
     modes = ("wear", "seizure") * 6
     sample = hersey.Failures(ages, ages, np.ones(12, dtype=int), "h", modes, kelvin, "K", "arrhenius", 300.0)
     law = hersey.weibull(sample, calibrate=False)
@@ -316,6 +316,20 @@ def test_too_few_failures_give_no_law(ages: list[float], failed: list[bool], wor
     ):
         with pytest.raises(InsufficientDataError, match=words):
             asked()
+
+
+def test_found_failed_at_any_age_alike_gives_no_law() -> None:
+    """Both found failed by 10 and 20 may have failed at once, and the one of 30 never."""
+    low, high = np.array([0.0, 0, 30]), np.array([10.0, 20, np.inf])
+    law = hersey.weibull(hersey.Failures(low, high, np.ones(3, dtype=int), "h"))
+    assert not law.is_known
+    assert "The share failed hardly grows with age" in law.summary()
+
+
+def test_the_greatest_numbers_do_no_harm(recwarn: pytest.WarningsRecorder) -> None:
+    law = hersey.weibull([1e300, 1e-300, 5.0], [True] * 3, calibrate=False)
+    assert not recwarn.list
+    json.dumps(law.to_dict(), allow_nan=False)
 
 
 def test_one_failure_is_enough_where_the_shape_is_known() -> None:

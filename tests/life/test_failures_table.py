@@ -84,6 +84,7 @@ def test_failed_and_censored_say_it_too(tmp_path: Path) -> None:
         "age [h],failed\n10,1\n20,0\n",
         "age [h],censored\n10,no\n20,yes\n",
         "age [h],mode\n10,wear\n20,\n",
+        ",age [h],failed,count\n0,10.0,1.0,1.0\n1,20.0,0.0,1.0\n",
         "age [h],status\n,\n10,failed\n\n20,running\n , \n",
     ):
         assert ends(table(tmp_path, text)) == expected
@@ -116,6 +117,7 @@ REFUSED = {
     "Time,Event\n10,1\n": "line 2, column 'Time': age '10' has no unit",
     "age [h],failed\n10,F\n": "line 2, column 'failed' is 'F': write yes or no",
     "start [h],end [h],status\n10,,F\n": "line 2, column 'end' is empty, but it failed. Fill it in",
+    "age status\n10 F\n": "'age status'. Separate columns by commas, e.g. 'age,status'",
     "time,lifetime,status\n10,10,F\n": "columns 'time' and 'lifetime' both say the age",
     "age [h]\n10\n": "failures.csv: no column says which specimens failed. Columns: 'age [h]'",
     "duration,status\n10,failed\n": "failures.csv: there is no column 'age'. Columns: 'duration', 'status'",

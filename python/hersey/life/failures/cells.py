@@ -185,9 +185,10 @@ def count_of(table: Table, line: int, row: Sequence[str]) -> int:
     cell = table.cell(row, "count")
     if "count" not in table.at:
         return 1
-    if not (cell.isascii() and cell.isdigit() and 0 < int(cell) < 10**9):
+    whole = re.fullmatch(r"([0-9]{1,9})(?:\.0*)?", cell)
+    if whole is None or int(whole[1]) == 0:
         shown = f"'{cell[:40]}'" if cell else "empty"
         raise ParameterError(
             f"{table.place(line, 'count')} is {shown}: write a whole number of specimens, 1 or more"
         )
-    return int(cell)
+    return int(whole[1])

@@ -21,7 +21,7 @@ _RUNNING = frozenset(
     ["running", "suspended", "suspension", "s", "censored", "survived", "alive", "right", "ok", "good", "c"]
 )
 _LEFT = frozenset(["left", "before", "found failed"])
-_YES, _NO = frozenset(["1", "yes", "true", "y"]), frozenset(["0", "no", "false", "n"])
+_YES, _NO = frozenset(["1", "1.0", "yes", "true", "y"]), frozenset(["0", "0.0", "no", "false", "n"])
 #: An end that a specimen has not reached, as other programs write it.
 _ENDLESS = frozenset(["inf", "infinity", "\u221e"])
 _AMOUNT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S.*?)\s*")
@@ -91,6 +91,8 @@ def _refuse_unclear(table: Table, stress: str) -> None:
     at = table.at
     columns = table.columns
     remedy = f"line 1 must name age and status, e.g. '{_EXAMPLE}', or low and high, e.g. 'low [h],high [h]'"
+    if len(table.listed) == 1 and len(table.listed[0].split()) > 1:
+        remedy = f"separate columns by commas, e.g. '{','.join(table.listed[0].split())}'"
     if "age" in at and ("low" in at or "high" in at):
         raise ChannelError(f"{table.name}: columns of 'age' and of 'low' or 'high'. {columns}", remedy=remedy)
     if "age" not in at and not {"low", "high"} <= at.keys():
@@ -156,7 +158,7 @@ def _status(table: Table, line: int, row: Sequence[str]) -> str:
     where = f"{table.place(line, role)} is {shown}"
     if role != "status":
         raise UnreadableLogError(f"{where}: write yes or no")
-    if cell in ("0", "1"):
+    if cell in ("0", "1", "0.0", "1.0"):
         raise UnreadableLogError(
             f"{where}: {_ROWS}, or name the column 'failed' if 1 means failed, 'censored' if 1 means running"
         )
