@@ -48,7 +48,9 @@ def test_an_activation_energy_is_found_again() -> None:
     assert law.acceleration.effect == pytest.approx(0.7, abs=1e-8)
     assert law.acceleration.low < 0.7 < law.acceleration.high
     assert law.acceleration.same_shape == pytest.approx(1.0)
+    assert law.at_use.low == pytest.approx(law.at_use.high)
     places, shares = law.positions  # carried over to 300 K
+    assert places.size == 36
     assert law.share_failed(places) == pytest.approx(shares, abs=0.05)
     ratio = math.exp(0.7 / 8.617333262e-5 * (1 / 300 - 1 / 350))
     at_350 = hersey.weibull(ages[12:24], np.ones(12, dtype=bool), calibrate=False)
@@ -163,6 +165,10 @@ def test_failure_modes_are_fitted_apart_and_joined() -> None:
     assert [p.value for p in law.modes[0].parameters] == pytest.approx(numbers(wear), rel=1e-9)
     outlive = [1 - fit.share(300.0) for fit in law.fits]
     assert law.share_failed(300.0) == pytest.approx(1 - np.prod(outlive), rel=1e-12)
+    at = law.reliability(300.0)
+    drawn_shares = np.exp(sum(each.log_survival(np.array(300.0)) for each in law.draws))
+    assert at.share == pytest.approx(np.prod(outlive), rel=1e-12)
+    assert (at.low, at.high) == pytest.approx(np.quantile(drawn_shares, [0.05, 0.95]), rel=1e-9)
     b10 = law.b_lives[0]
     assert law.share_failed(b10.age) == pytest.approx(0.10, rel=1e-9)
     assert b10.low < b10.age < b10.high
@@ -332,6 +338,12 @@ def test_the_greatest_numbers_do_no_harm(recwarn: pytest.WarningsRecorder) -> No
     json.dumps(law.to_dict(), allow_nan=False)
 
 
+def test_up_to_three_failures_are_few() -> None:
+    for count, kinds in ((3, ["few failures"]), (4, [])):
+        law = hersey.weibull([50.0, 90.0, 120.0, 160.0][:count], [True] * count, calibrate=False)
+        assert [each.kind for each in law.warnings] == kinds
+
+
 def test_one_failure_is_enough_where_the_shape_is_known() -> None:
     """The scale is (sum of ages^shape over failures)^(1/shape)."""
     law = hersey.weibull([10.0, 20.0, 30.0], [False, True, False], shape=2.0, unit="h")
@@ -344,6 +356,12 @@ def test_the_same_seed_gives_the_same_bits() -> None:
     assert one.to_dict() == other.to_dict()
     wide, narrow = (one.fits[0].bounds(np.array([0.1]), level, age_held) for level in (0.95, 0.5))
     assert wide[0] < narrow[0] < narrow[1] < wide[1]
+
+
+def test_the_scale_of_a_gamma_law_has_the_bounds_of_its_draws() -> None:
+    law = hersey.weibull([54.0, 187, 216, 240, 335], [True] * 5, law="gamma", level=0.8)
+    ends = np.quantile(np.exp(law.draws[0].m), [0.1, 0.9])
+    assert (law.parameters[1].low, law.parameters[1].high) == pytest.approx(ends, rel=1e-12)
 
 
 def test_another_law_that_fits_better_is_named() -> None:

@@ -192,7 +192,10 @@ def test_an_inverse_power_of_a_book() -> None:
     middle = float(np.average(-np.log(load)))
     assert fit.m - fit.c * middle == pytest.approx((21.6 + 33.4) / 2, abs=0.05)
     assert law.acceleration is not None
-    assert law.acceleration.low < 4.289 < law.acceleration.high
+    low, high = law.acceleration.low, law.acceleration.high
+    assert low < 4.289 < high
+    drawn = np.quantile(law.draws[0].c, [0.05, 0.95])
+    assert drawn == pytest.approx([low, high], abs=0.1 * (high - low))
     assert [each.kind for each in law.warnings] == ["stress of use not tested"]
 
 
