@@ -252,6 +252,8 @@ def test_the_remaining_life_of_a_specimen() -> None:
     median = scale * ((200 / scale) ** shape + math.log(2)) ** (1 / shape) - 200
     assert found.median == pytest.approx(median, rel=1e-9)
     assert found.earliest < found.low < found.median < found.high < found.latest
+    outlive = np.exp((200 / scale) ** shape - ((200 + found.ahead) / scale) ** shape)
+    assert found.outlive == pytest.approx(outlive, rel=1e-9)
     new = hersey.remaining_life(law, 0.0)
     b50 = law.b_lives[1]
     assert new.median == pytest.approx(b50.age, rel=1e-9)

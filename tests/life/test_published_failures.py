@@ -386,3 +386,6 @@ def test_likelihood_ratio_bounds_of_reliasoft() -> None:
     )
     b20 = law.b_life(0.20)
     assert [round(each, 3) for each in (b20.age, b20.low, b20.high)] == [55.718, 43.634, 66.085]
+    sigma = law.parameters[0]  # the table of ages by sigma runs from 0.24 to 0.48
+    assert 0.23 < sigma.low <= 0.24
+    assert 0.48 <= sigma.high < 0.49
