@@ -6,6 +6,7 @@ import json
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,11 @@ from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLog
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
 from hersey.life.campaign.store import SCHEMAS
+from hersey.life.growth.limit_ages import Earliest
 from hersey.life.indicator import Indicator, Indicators, Runs
 from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event
 from hersey.life.time_to_failure.estimate import time_to_failure
+from hersey.life.time_to_failure.way import FittedWay
 from tests.cli.command import run
 from tests.life import shipped
 from tests.life.shipped import fewer
@@ -249,3 +252,13 @@ def test_a_renewed_layer_thins_from_its_own_age(monkeypatch: pytest.MonkeyPatch)
     assert np.isnan(found.curves[0].value[0, young]).all()
     assert np.isfinite(found.curves[0].value[0, ~young]).all()
     assert np.isfinite(found.curves[0].value[1:]).all()
+
+
+def test_values_foretold_count_from_the_last_event() -> None:
+    asked: list[tuple[int, list[float]]] = []
+    growth = SimpleNamespace(drawn_values=lambda row, age: asked.append((row, age.tolist())))
+    mode: Any = SimpleNamespace(growth=growth)
+    none = np.zeros((1, 2))
+    way = FittedWay(mode, none, none, none[0], {"U1": 1}, 0.1, {"U1": 300.0}, Earliest.unknown(1))
+    way.drawn_values("U1", np.array([300.0, 500.0]))
+    assert asked == [(1, [0.0, 200.0])]
