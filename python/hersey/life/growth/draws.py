@@ -10,6 +10,7 @@ import numpy as np
 from hersey.arrays import FloatArray
 from hersey.life.growth.limit_ages import ages_of, ages_of_sum, beyond, later
 from hersey.life.growth.marginal import Specimens, drawn_specimens, new_specimens
+from hersey.life.growth.peaks import first_guess
 from hersey.life.growth.points import Points
 from hersey.life.growth.posterior import Posterior
 
@@ -86,13 +87,20 @@ def _each(drawn: tuple[Specimens, ...]) -> Iterator[tuple[Specimens, slice]]:
         yield units, slice(begin, begin := begin + len(units.scatter))
 
 
+def _begun(found: Posterior, points: Points) -> FloatArray:
+    """Where the search for the size of each specimen begins; some may have been none of the posterior's."""
+    return found.sizes if found.sizes.size == len(points.age) else first_guess(found.law, points)[1]
+
+
 def draws_of(
     found: list[tuple[Posterior, FloatArray]], points: Points, seed: int, random: np.random.Generator
 ) -> Draws:
     """Return draws of specimens and of new ones for each draw of what they share."""
     last = points.age.max(axis=1, where=points.given, initial=0.0)
     return Draws(
-        tuple(drawn_specimens(each.law, points, shared, each.sizes, random) for each, shared in found),
+        tuple(
+            drawn_specimens(each.law, points, shared, _begun(each, points), random) for each, shared in found
+        ),
         tuple(new_specimens(each.law, shared) for each, shared in found),
         np.where(last > 0.0, last, 1.0),
         seed,

@@ -39,8 +39,10 @@ if TYPE_CHECKING:
 
 #: Weight from which a law is named, and that of no growth from which an indicator does not show any.
 NAMED, UNCHANGED = 0.9, 0.5
-#: Draws behind every interval; of more than so many specimens.
-_DRAWS, _OF_MANY, _MANY = 2000, 1000, 100
+#: Draws behind every interval; of many specimens fewer, so many in all, down to the fewest.
+_DRAWS, _IN_ALL, _FEWEST = 2000, 200_000, 400
+#: Specimens that show what all share: more would show it better than any law holds.
+_SHOWING = 100
 #: Power of the evidence of laws that grow, over each other.
 COARSE = 0.5
 #: Level of the upper bound of a rate.
@@ -317,14 +319,15 @@ def fit_growth(
     units = tuple(dict.fromkeys(names))
     points, scale = points_of(names, units, *columns)
     random = np.random.default_rng(seed)
-    found = [posterior(peak, points, random) for peak in peaks(chosen, points)]
+    showing = points.spread(_SHOWING)
+    found = [posterior(peak, showing, random) for peak in peaks(chosen, showing)]
     before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
     evidence = np.array([each.log_evidence + before[each.law.name] for each in found])
     weights = _weights(found, evidence)
     by_law = {law.name: 0.0 for law in chosen} | {
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
-    count = _DRAWS if len(units) <= _MANY else min(_DRAWS, _OF_MANY)
+    count = min(_DRAWS, max(_FEWEST, _IN_ALL // len(units)))
     draws = draws_of(resampled(found, weights, count, random), points, seed, random)
     growing = None
     if by_law.get("constant", 0.0) >= UNCHANGED:

@@ -95,7 +95,7 @@ def log_posterior(
     return np.where(np.isfinite(total), total, -np.inf)
 
 
-def _first_guess(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
+def first_guess(law: Law, points: Points) -> tuple[FloatArray, FloatArray]:
     """What all share, and sizes of the specimens, from lines through each specimen."""
     number = points.given.sum(axis=1)
     mean_age = (points.age * points.given).sum(axis=1) / number
@@ -172,11 +172,11 @@ def peaks(laws: list[Law], points: Points) -> list[Peak]:
     tried.
     """
     few = points.part(_FIRST)
-    guesses = [_first_guess(law, few) for law in laws]
+    guesses = [first_guess(law, few) for law in laws]
     found = _hopeful([_peak_of(law, few, *guess) for law, guess in zip(laws, guesses, strict=True)])
     if len(few.value) == len(points.value):
         return found
-    sizes = {each.law.name: _first_guess(each.law, points)[1] for each in found}
+    sizes = {each.law.name: first_guess(each.law, points)[1] for each in found}
     return _hopeful([_peak_of(each.law, points, each.at, sizes[each.law.name]) for each in found])
 
 

@@ -52,6 +52,13 @@ class Points:
         age, value, variance = (np.ascontiguousarray(e.T) for e in (self.age, self.value, self.variance))
         return ByRun(age, value, variance, np.ascontiguousarray(self.given.T))
 
+    def spread(self, units: int) -> Points:
+        """So many specimens at most, evenly spread over all."""
+        if len(self.age) <= units:
+            return self
+        some = np.linspace(0.0, len(self.age) - 1.0, units).round().astype(np.intp)
+        return Points(self.age[some], self.value[some], self.variance[some], self.given[some])
+
     def part(self, units: int) -> Points:
         """The first specimens alone."""
         return Points(
