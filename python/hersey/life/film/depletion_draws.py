@@ -30,14 +30,14 @@ _NUMBERS = SENSITIVITY
 #: Means over specimens, beforehand: mean and standard deviation; spreads over specimens: scale of a
 #: half-normal.
 _MEAN = np.array([0.0, -0.5, 0.0, 0.2, 0.0, np.log(BY_THEORY)])
-_MEAN_DEVIATION = np.array([2.0, 1.5, 1.0, 0.7, 1.5, 0.7])
+_MEAN_DEVIATION = np.array([2.0, 1.5, 1.0, 0.7, 2.5, 0.7])
 _SPREAD = np.array([0.5, 0.7, 0.2, 0.5, 0.0, 0.0])
 #: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
 _SCATTER = 0.02
 #: From so many specimens on they are many.
 _MANY = 60
 #: Steps from one of all specimens together to the next.
-_TOGETHER = 2
+_TOGETHER = 3
 #: Standard deviations of ln density below the upper quarter from which a walker is stuck.
 _STUCK = 4.0
 #: Steps from one cull of walkers to the next, while they still search.
@@ -146,7 +146,7 @@ def fit_depletion(
     likelihoods = _likelihoods_of(layers, unit, age / greatest, temperature_sensitivity, rates)
     plan = _FEW_SPECIMENS if likelihoods.first.size < _MANY else _MANY_SPECIMENS
     own, mean, spread = _walked(layers, likelihoods, plan, np.random.default_rng(seed))
-    common = (temperature_sensitivity, layers.sharpness, layers.fading)
+    common = (temperature_sensitivity, layers.sharpness, layers.fading, layers.starved_at)
     own, mean = _with(own, common), _with(mean, common)
     return Depletion(own, mean, _with(spread, (0.0,) * len(common)), greatest, layers.reference, rates)
 
@@ -180,7 +180,7 @@ class _Plan(NamedTuple):
 
 
 #: For few specimens, and for so many that they tell the spread over specimens by their number.
-_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 340, 140, 2000), _Plan(16, 320, 120, 240)
+_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 320, 130, 2000), _Plan(16, 320, 120, 240)
 
 
 def _walked(
@@ -249,8 +249,10 @@ def _move_together(
     one, other = random.integers(others.size, size=(2, len(here)))
     stride = 1.0 if random.random() < 0.1 else 2.38 / np.sqrt(2.0 * free.size)
     step = np.zeros_like(here)
-    noise = 1e-3 * random.standard_normal((len(here), free.size))
-    step[:, free] = stride * (mean[others[one]] - mean[others[other]])[:, free] + noise
+    noise = 1e-4 * random.standard_normal((len(here), free.size))
+    # By what specimens have on average, which the runs know better than the means of all there are.
+    average = own[others].mean(axis=1)
+    step[:, free] = stride * (average[one] - average[other])[:, free] + noise
     found = likelihoods.log_likelihood(own[moved] + step[:, None])
     prior = [-0.5 * (((at - _MEAN) / _MEAN_DEVIATION) ** 2).sum(axis=-1) for at in (here, here + step)]
     gain = (found - density[moved]).sum(axis=1) + prior[1] - prior[0]

@@ -15,12 +15,12 @@ from scipy import special
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.starved_drag import Flooded, cubic
-from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between, starved_layer
+from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between
 
 #: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss when new times T, ln of the
 #: factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in the
-#: loss, ln of the power of side flow, the change of ln viscosity from hot to cold, and sharpness and fading
-#: of starvation. T is the greatest age, h the flooded film at the reference.
+#: loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading of
+#: starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the flooded film at the reference.
 (
     LAYER_NEW,
     LOSS,
@@ -31,14 +31,15 @@ from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between, starv
     SENSITIVITY,
     SHARPNESS,
     FADING,
-) = range(9)
+    STARVED_AT,
+) = range(10)
 #: Ends of ln of the power of side flow.
 _POWERS = np.log([0.1, 10.0])
 
 
 @dataclass(frozen=True)
 class Depletion:
-    """Draws of what specimens have, (draws, specimens, 9), and of all: means and spreads, (draws, 9)."""
+    """Draws of what specimens have, (draws, specimens, 10), and of all: means and spreads, (draws, 10)."""
 
     specimens: FloatArray
     mean: FloatArray
@@ -48,12 +49,12 @@ class Depletion:
     rates: Rates
 
     def layer(self, own: FloatArray, age: FloatArray) -> FloatArray:
-        """Return ln of the layer (m) of draws (..., 9) at ages in any unit; shape (..., ages)."""
+        """Return ln of the layer (m) of draws (..., 10) at ages in any unit; shape (..., ages)."""
         scaled, each = np.asarray(age) / self.greatest_age, own[..., None, :]
         return scale(self.reference) + self.rates.layer(each, scaled)
 
     def rate(self, own: FloatArray) -> dict[str, FloatArray]:
-        """Return K (1/(m^2 age)), p, e and g (1/age) of draws (..., 9)."""
+        """Return K (1/(m^2 age)), p, e and g (1/age) of draws (..., 10)."""
         flows, evaporation = self.rates.of(own)
         square = np.exp(2.0 * (scale(self.reference) + own[..., LAYER_NEW]))
         return {
@@ -64,22 +65,21 @@ class Depletion:
         }
 
     def viscosity(self, own: FloatArray, age: FloatArray) -> FloatArray:
-        """Return ln of the factor on viscosity of draws (..., 9) at ages; shape (..., ages)."""
+        """Return ln of the factor on viscosity of draws (..., 10) at ages; shape (..., ages)."""
         scaled = np.asarray(age) / self.greatest_age
         return own[..., VISCOSITY_NEW, None] + own[..., THICKENING, None] * scaled
 
     def over_flooded(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
-        """Return ln of the layer over the flooded film at a point, of draws (..., 9) at ages."""
+        """Return ln of the layer over the flooded film at a point, of draws (..., 10) at ages."""
         at = self.viscosity(own, age) + own[..., SENSITIVITY, None] * point.steep.item()
         return self.layer(own, age) - cubic(point.film.reshape(4), at)[0]
 
     def over_starved(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
-        """Return ln of the layer over that below which the film starves, of draws (..., 9) at ages."""
-        least = starved_layer(own[..., SHARPNESS], own[..., FADING])
-        return self.over_flooded(own, age, point) - least[..., None]
+        """Return ln of the layer over that below which the film starves, of draws (..., 10) at ages."""
+        return self.over_flooded(own, age, point) - own[..., STARVED_AT, None]
 
     def log_share(self, own: FloatArray, age: FloatArray, point: Flooded) -> FloatArray:
-        """Return ln of the film over the flooded one at a point, of draws (..., 9) at ages."""
+        """Return ln of the film over the flooded one at a point, of draws (..., 10) at ages."""
         sharpness, fading = own[..., SHARPNESS, None], own[..., FADING, None]
         return log_share_between(self.over_flooded(own, age, point), sharpness, fading)[0]
 

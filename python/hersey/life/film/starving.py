@@ -172,7 +172,7 @@ def starves_at(layers: LayersOfSpecimens, point: Flooded, share: float) -> Starv
 
 
 def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
-    """Ages at which the film of draws (..., 9) is first starved; infinite where never.
+    """Ages at which the film of draws (..., 10) is first starved; infinite where never.
 
     ``off`` is the error of ln of layer over film that all specimens have in common, of each draw.
     """
