@@ -11,6 +11,7 @@ import pytest
 import hersey
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life import following
+from hersey.life.ageing_maps import ageing_maps
 from hersey.life.following import follow
 from hersey.report.life_page import render_life
 from tests.life import shipped
@@ -94,6 +95,18 @@ def test_without_a_drivetrain_it_does_what_it_can(radius: str, tmp_path: Path) -
     assert lacking == {"stick-slip from rest" if radius else "stick-slip at a used operating point"}
     assert "the machine file has no [drivetrain]" in found.summary()
     assert found.maps is None
+
+
+def test_runs_that_do_not_fit_enter_neither_drift_nor_maps() -> None:
+    campaign = shipped.opened(2)
+    runs, dwells = campaign.runs(), campaign.dwells()
+    assert following._dwells(campaign, []).equals(dwells)
+    kept = following._dwells(campaign, [0, 2])
+    assert set(kept["run_id"]) == set(runs["run"]) - {runs["run"][0], runs["run"][2]}
+    found, machine = answer().time_to_failure, shipped.machine()
+    with shipped.few():
+        maps = ageing_maps(campaign, machine, found, unit="U1", excluded=[0])
+    assert maps.ages[0] == runs["age"][1] > runs["age"][0]
 
 
 def test_the_page_holds_the_answer() -> None:

@@ -173,7 +173,14 @@ def carried_on(log_torque: FloatArray, clock: FloatArray, to: float) -> FloatArr
 
 
 @one_thread()
-def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, unit: str = "") -> AgeingMaps:
+def ageing_maps(
+    campaign: Campaign,
+    machine: Machine,
+    found: TimeToFailure,
+    *,
+    unit: str = "",
+    excluded: Sequence[int] = (),
+) -> AgeingMaps:
     """Return the maps of a specimen when new, as last seen and, if it has not ended yet, at its end.
 
     Parameters
@@ -184,6 +191,8 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
         What ends the specimens, and when.
     unit
         Its name; the specimen that ends next if left out.
+    excluded
+        Places of runs that are not used.
 
     Raises
     ------
@@ -199,12 +208,11 @@ def ageing_maps(campaign: Campaign, machine: Machine, found: TimeToFailure, *, u
             remedy="add it, with stiffness, mass, roll_radius and stick_speed",
         )
     runs = read_runs_of(campaign, machine.rest)
-    own = [
-        (runs.runs.age[i], dwells, rest) for i, dwells, rest in runs.usable() if runs.runs.unit[i] == end.unit
-    ]
+    usable = [each for each in runs.usable() if each[0] not in excluded]
+    own = [(runs.runs.age[i], dwells, rest) for i, dwells, rest in usable if runs.runs.unit[i] == end.unit]
     if not own or any(not np.ptp(dwells.temperature) > _APART for _, dwells, _ in own):
         raise InsufficientDataError(f"the runs of {end.unit} do not show how torque depends on temperature")
-    kernel = shared_kernel([dwells for _, dwells, _ in runs.usable()])
+    kernel = shared_kernel([dwells for _, dwells, _ in usable])
     hot, speed = _grid(own[0][1], machine)
     rolls = speed / machine.roll_radius
     every = [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ from hersey.errors import HerseyError, ParameterError, Setting
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps
 from hersey.life.drift.result import Drift, fit_drift
 from hersey.life.film.through_life import FilmLife, film_life
-from hersey.life.indicator import Indicators
+from hersey.life.indicator import Indicators, Runs
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, uses_beside
 from hersey.life.time_to_failure.estimate import TimeToFailure, age_asked, time_to_failure
@@ -135,10 +135,10 @@ def follow(
     indicators = indicators.without_runs(diagnosis.excluded)
     said("growth and time to failure")
     found = time_to_failure(indicators, until=until, seed=seed)
-    drift = tried("drift", lambda: fit_drift(campaign.dwells()))
+    drift = tried("drift", lambda: fit_drift(_dwells(campaign, diagnosis.excluded)))
     maps = tried(
         "maps when new, now and at the end",
-        lambda: ageing_maps(campaign, machine, found, unit=unit),
+        lambda: ageing_maps(campaign, machine, found, unit=unit, excluded=diagnosis.excluded),
     )
     others = (
         tried(
@@ -149,3 +149,11 @@ def follow(
         else None
     )
     return LifeTest(campaign.path.name, indicators, found, drift, film, maps, others, tuple(warnings), seed)
+
+
+def _dwells(campaign: Campaign, excluded: Sequence[int]) -> pl.DataFrame:
+    """The dwells of a campaign without those of the runs at some places."""
+    import polars as pl
+
+    numbers = [Runs.of(campaign).run[place] for place in excluded]
+    return campaign.dwells().filter(~pl.col("run_id").is_in(numbers))

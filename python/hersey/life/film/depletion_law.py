@@ -20,7 +20,8 @@ from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between
 #: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss when new times T, ln of the
 #: factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in the
 #: loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading of
-#: starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the flooded film at the reference.
+#: starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the
+#: flooded film at the reference.
 (
     LAYER_NEW,
     LOSS,

@@ -276,9 +276,10 @@ def fit_growth(
     Priors, all weak: ln(r T) of the median specimen N(-0.5, 2^2), T being the greatest age (ln s of a
     saturating law); standard deviations between specimens of ln of level and rate lognormal, of medians 0.1
     and 0.3 and logarithms that spread by 1.2 and 0.8; scatter of runs half-normal of scale 0.1; ln(tau/T)
-    N(0.3, 1), of a run-in N(-2, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p N(1, 1); ln m N(0.3, 0.4^2);
-    logit d N(-2, 1). Growth and no growth are equally probable a priori; the growth laws share their half
-    equally, and then by the square root of their evidence, since none of them is quite true.
+    N(0.3, 1), of a run-in N(-2, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p N(1, 1); ln m N(0.3,
+    0.4^2); logit d N(-2, 1); of a sigmoid ln s N(0, 0.7^2), ln m N(0.7, 0.5^2). Growth and no growth are
+    equally probable a priori; the growth laws share their half equally, and then by the square root of
+    their evidence, since none of them is quite true.
 
     Parameters
     ----------

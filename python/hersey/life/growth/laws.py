@@ -142,6 +142,27 @@ def _power_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
     return np.asarray(np.expm1(y) ** np.exp(-a[0]) * np.exp(-x))
 
 
+def _come(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    """How much has come of a growth that sets in as a power of age and ends."""
+    sooner = _power_of_age(x, t, np.exp(a[1]))
+    return np.asarray(sooner / (1.0 + sooner))
+
+
+def _sigmoid(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+    return np.asarray(np.exp(a[0]) * _come(x, t, a))
+
+
+def _sigmoid_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
+    come, whole = _come(x, t, a), np.exp(a[0])
+    return whole * come, np.exp(a[1]) * whole * come * (1.0 - come)
+
+
+def _sigmoid_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
+    part = y * np.exp(-a[0])
+    held = np.where(part < 1.0, part, 0.0)
+    return np.where(part < 1.0, (held / (1.0 - held)) ** np.exp(-a[1]) * np.exp(-x), np.inf)
+
+
 def _run_in(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
     return np.asarray(np.log1p(_power_of_age(x, t, np.exp(a[2])) - special.expit(a[1]) * _full(t, a)))
 
@@ -235,6 +256,14 @@ LAWS = (
         )
     ),
     Law("power", "1 + (r t)^m", _power, _power_sloped, _power_age, (("ln m", 0.3, 0.4),)),
+    Law(
+        "sigmoid",
+        "exp(s z / (1 + z)), z = (r t)^m",
+        _sigmoid,
+        _sigmoid_sloped,
+        _sigmoid_age,
+        (("ln s", 0.0, 0.7), ("ln m", 0.7, 0.5)),
+    ),
     Law(
         "run-in",
         "1 - d (1 - exp(-t/tau)) + (r t)^m",

@@ -33,6 +33,8 @@ _SAID = 0.05
 FAILED, RUNNING = 0.95, 0.05
 #: Times the age followed up to which runs show an age: beyond it growth may set in or end that no run shows.
 FAR = 3.0
+#: Times the age followed beyond which no interval begins: what sets in later, runs did not show.
+SURE = 1.75
 #: Fewest specimens that show how specimens differ: fewer make no population.
 POPULATION = 4
 #: Integrals over age: places and weights, turns of the search and where it ends, the greatest logarithm.
@@ -164,16 +166,18 @@ def age_at_limit(
 ) -> AgeAtLimit:
     """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages.
 
-    Where most draws do not reach it, the interval begins at ``earliest`` at the latest. An age beyond `FAR`
-    times the age ``followed`` (default: ``last``) is known to be later than that, no more.
+    Where most draws do not reach it, the interval begins at ``earliest`` at the latest. It begins at `SURE`
+    times the age ``followed`` (default: ``last``) at the latest, and has no end where the age is beyond `FAR`
+    times that.
     """
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
     age = interval(ages)
     if math.isinf(age.value):
         age = Interval(age.value, min(age.low, earliest), age.high)
-    shown = FAR * (last if followed is None else followed)
-    if age.value > shown > 0.0:
-        age = Interval(age.value, min(age.low, shown), math.inf)
+    seen = last if followed is None else followed
+    if seen > 0.0:
+        high = math.inf if age.value > FAR * seen else age.high
+        age = Interval(age.value, min(age.low, SURE * seen), high)
     return AgeAtLimit(name, age, never, last, passed)
 
 
@@ -214,9 +218,9 @@ class Earliest:
         )
 
     def within_reach(self, last: FloatArray) -> Earliest:
-        """Return those that runs up to the ages ``last`` of the specimens show: up to `FAR` times that."""
-        most = FAR * float(last.max())
-        units = np.minimum(self.units, FAR * last)
+        """Return those that runs up to the ages ``last`` of the specimens show: up to `SURE` times that."""
+        most = SURE * float(last.max())
+        units = np.minimum(self.units, SURE * last)
         return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
 
     @classmethod

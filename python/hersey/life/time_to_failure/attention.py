@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from hersey.errors import sentence
-from hersey.life.growth.limit_ages import FAR, Interval, rounded
+from hersey.life.growth.limit_ages import Interval, rounded
 from hersey.life.time_to_failure.first import SpecimenEnd
 from hersey.result import Means, Record
 
@@ -28,7 +28,7 @@ class Attention(Record):
         float | None,
         Means(
             "age that the running specimens should reach: the least lower end of their intervals, at most "
-            "three times the age followed; null if none is running"
+            "1.75 times the age followed; null if none is running"
         ),
     ]
 
@@ -65,7 +65,7 @@ def attention_of(specimens: Sequence[SpecimenEnd]) -> Attention:
         state: tuple(each.unit for each in ordered if each.state == state)
         for state in ("failed", "unclear", "running")
     }
-    lows = [min(each.age.age.low, FAR * each.age.last) for each in specimens if each.state == "running"]
+    lows = [each.age.age.low for each in specimens if each.state == "running"]
     return Attention(**named, look_again=min(lows, default=None))
 
 

@@ -148,7 +148,7 @@ class TimeToFailure(Result):
         ]
         half = [(mode, mode.ages.b50) for mode in self.modes if mode.ages.b50 is not None]
         soon = FAR * max(each.age.last for each in self.units)
-        far = [mode.name for mode, b50 in half if mode.grows and b50.age.low > soon]
+        far = [mode.name for mode, b50 in half if mode.grows and b50.age.value > soon]
         for mode, b50 in half:
             sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
