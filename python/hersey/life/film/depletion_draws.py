@@ -180,7 +180,7 @@ class _Plan(NamedTuple):
 
 
 #: For few specimens, and for so many that they tell the spread over specimens by their number.
-_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 320, 130, 2000), _Plan(16, 320, 120, 240)
+_FEW_SPECIMENS, _MANY_SPECIMENS = _Plan(64, 270, 120, 2000), _Plan(16, 320, 120, 240)
 
 
 def _walked(
