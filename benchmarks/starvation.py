@@ -28,7 +28,7 @@ SCALE = 1e5
 
 
 @dataclass(frozen=True)
-class Told:
+class Case:
     """A reported age: truth and interval over the age last seen; and the share that was reported."""
 
     seed: int
@@ -115,7 +115,7 @@ temperature = "{drive.hot - ZERO:.9g} degC"
 """
 
 
-def campaign(seed: int, folder: Path) -> list[Told]:
+def campaign(seed: int, folder: Path) -> list[Case]:
     """Draw a campaign, ask hersey when its specimens starve, and set that beside the truth."""
     from hersey.life.film.through_life import film_life
     from hersey.machine.machine import read_machine
@@ -127,49 +127,49 @@ def campaign(seed: int, folder: Path) -> list[Told]:
     begin = time.process_time()
     film = film_life(kept, machine)
     seconds = time.process_time() - begin
-    told = []
+    found = []
     for each in film.starves[0].units:
         last = max(log.age for log in logs if log.unit == each.unit)
         true = float(world.starved[int(each.unit[1:]) - 1])
         ends = (getattr(each.age, name) / SCALE / last for name in ("low", "value", "high"))
         shares = (film.other_drag.low, film.other_drag.share, film.other_drag.high)
-        told.append(Told(seed, world.drive.law, world.drive.share, true / last, *ends, shares, seconds))
-    return told
+        found.append(Case(seed, world.drive.law, world.drive.share, true / last, *ends, shares, seconds))
+    return found
 
 
-def tried(seed: int) -> tuple[list[Told], str]:
-    """Return what a campaign tells, and its fault."""
+def tried(seed: int) -> tuple[list[Case], str]:
+    """Return what a campaign shows, and its fault."""
     with tempfile.TemporaryDirectory() as folder:
         try:
             return campaign(seed, Path(folder)), ""
-        except Exception as error:  # a fault is told, and does not end the others
+        except Exception as error:  # a fault is reported, and does not end the others
             return [], f"seed {seed}: {type(error).__name__}: {error}"
 
 
-def line(name: str, told: list[Told]) -> str:
+def line(name: str, found: list[Case]) -> str:
     """Return a row of the table."""
-    if not told:
+    if not found:
         return f"| {name} | 0 |" + " |" * 6
-    true, low, middle, high = np.array([(each.true, each.low, each.middle, each.high) for each in told]).T
+    true, low, middle, high = np.array([(each.true, each.low, each.middle, each.high) for each in found]).T
     with np.errstate(invalid="ignore"):
         width, off = np.median((high - low) / true), np.median(middle / true - 1.0)
     inside = np.mean((low <= true) & (true <= high))
     cells = (
         name,
-        len(told),
+        len(found),
         f"{inside:.0%}",
         f"{np.mean(true < low):.0%}",
         f"{np.mean(true > high):.0%}",
         f"{width:.2f}",
         f"{off:+.0%}",
-        f"{np.mean([each.shares[0] - 0.03 <= each.share <= each.shares[2] + 0.03 for each in told]):.0%}",
+        f"{np.mean([each.shares[0] - 0.03 <= each.share <= each.shares[2] + 0.03 for each in found]):.0%}",
     )
     return "| " + " | ".join(map(str, cells)) + " |"
 
 
-def table(told: list[Told]) -> list[str]:
+def table(found: list[Case]) -> list[str]:
     """Return the lines of the table: by law, by share, and all."""
-    near = [each for each in told if each.true <= NEAR]
+    near = [each for each in found if each.true <= NEAR]
     lines = [
         "| | ages | hold the truth | truth below | truth above | width over age | off | share held |",
         "|" + "---|" * 8,
@@ -188,11 +188,11 @@ def main() -> None:
     given = parser.parse_args()
     from benchmarks.starvation import tried as task  # worker processes know no `__main__` of this one
 
-    told: list[Told] = []
+    every: list[Case] = []
     wrong: list[str] = []
     seeds = range(given.seed, given.seed + given.campaigns)
     for found, fault in worked(task, seeds, given):
-        told += found
+        every += found
         wrong += [fault] if fault else []
         if found:
             print(
@@ -203,7 +203,7 @@ def main() -> None:
                 file=sys.stderr,
                 flush=True,
             )
-    print("\n".join([*table(told), "", *wrong]))
+    print("\n".join([*table(every), "", *wrong]))
 
 
 if __name__ == "__main__":

@@ -22,8 +22,8 @@ _MEASURED = re.compile(
 )
 #: What is counted, behind its number.
 COUNTED = re.compile(
-    rf"{_NUMBER}(?: (?:of|and) {_NUMBER})* (?:\w+[ -]){{0,2}}(?:draws?|dwells?|rows?|places?|runs?|specimens?"
-    r"|others|failed|logs?|slips?|files?|spikes?|stretch(?:es)?|points?|temperatures?|speeds?|samples?|profiles?|warnings?|coasts?|coast-downs?|more)\b"
+    rf"{_NUMBER}(?: (?:of|and|to) {_NUMBER})* (?:\w+[ -]){{0,2}}(?:draws?|dwells?|rows?|places?|runs?"
+    r"|specimens?|others|failed|logs?|slips?|files?|spikes?|stretch(?:es)?|points?|temperatures?|speeds?|samples?|profiles?|warnings?|coasts?|coast-downs?|more)\b"
 )
 #: Names that hold a number: equations, specimens, quantiles, files, dates, versions, columns, references.
 NAMES = re.compile(

@@ -199,6 +199,7 @@ RESULTS: dict[str, tuple[Callable[[], Any], type]] = {
     "FailureLaw": (failures, hersey.FailureLaw),
     "RemainingLife": (lambda: hersey.remaining_life(failures(), 5.0), hersey.RemainingLife),
     "FleetForecast": (lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0), hersey.FleetForecast),
+    "Replacement": (lambda: hersey.replacement_age(failures(), 5.0), hersey.Replacement),
     "LifeTestPlan": (lambda: hersey.life_test_plan(3.0, shape=2.0, unit="h"), hersey.LifeTestPlan),
     "Drift": (lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))), DriftPart),
     "Growth": (growth, hersey.Growth),

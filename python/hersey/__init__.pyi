@@ -65,6 +65,8 @@ from .life.indicator import Runs as Runs
 from .life.indicators.of_campaign import indicators_of as indicators_of
 from .life.other_uses import OtherUses as OtherUses
 from .life.other_uses import other_uses as other_uses
+from .life.replacement import Replacement as Replacement
+from .life.replacement import replacement_age as replacement_age
 from .life.time_to_failure.estimate import TimeToFailure as TimeToFailure
 from .life.time_to_failure.estimate import time_to_failure as time_to_failure
 from .life.trend.fit import trend as trend

@@ -11,13 +11,14 @@ import pytest
 from playwright.sync_api import Browser
 
 from hersey.life.growth.limit_ages import rounded
+from hersey.life.time_to_failure.estimate import time_to_failure
 from hersey.report.life_page import render_life
 from tests.browser.accessibility import open_all, violations_by_width
 from tests.browser.opening import Opened
 from tests.conftest import mostly_nightly
 from tests.life import shipped
 from tests.life.test_other_uses import by_hand
-from tests.life.test_time_to_failure import told
+from tests.life.test_time_to_failure import RATE, indicator, linear, of, told
 
 
 @pytest.fixture(scope="module")
@@ -127,3 +128,25 @@ def test_the_numbers_that_matter_appear_once_and_all_agree(browser: Browser, tmp
     assert page.locator("#chart-population svg.marks").count() == 1
     assert found.curve is not None
     assert np.interp(half.age.value, found.curve.age, found.curve.median) == pytest.approx(0.5, abs=0.05)
+
+
+def test_the_decision_asked_for_is_answered_on_the_first_screen(browser: Browser, tmp_path: Path) -> None:
+    path = tmp_path / "life.html"
+    with shipped.few():
+        found = time_to_failure(
+            of(indicator("torque", linear(RATE), 2.0)), until="900 pages", share=0.2, cost_of_failure=10.0
+        )
+    answer = replace(shipped.followed(2), time_to_failure=found, uses=None)
+    path.write_text(render_life(answer, shipped.opened(2).runs(), "hersey life"), encoding="utf-8")
+    opened = Opened(browser, path)
+    opened.assert_quiet()
+    more = [each.replace("\u00a0", " ") for each in opened.page.locator("#verdict .more").all_inner_texts()]
+    assert more == [found.of_new(), *found.answers()]
+    assert found.followed_failing is not None
+    failed = found.followed_failing.failed
+    rows = opened.page.locator(".population dt").all_inner_texts()
+    assert rows[1].replace("\u00a0", " ") == "Of the 6 followed, failures before 900 pages"
+    ends = f" ({failed.low:g} to {failed.high:g})" if failed.low != failed.high else ""
+    shown = opened.page.locator(".population dd").all_inner_texts()[1].replace("\u00a0", " ")
+    assert shown == f"{failed.value:g}{ends}"
+    assert opened.page.locator("#chart-replacement svg.marks").count() == 1

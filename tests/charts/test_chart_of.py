@@ -179,6 +179,7 @@ MADE: dict[str, Callable[[], Any]] = {
     "FailureLaw": lambda: failures(),
     "RemainingLife": lambda: hersey.remaining_life(failures(), 5.0),
     "FleetForecast": lambda: hersey.fleet_forecast(failures(), [0.0, 5.0], 3.0),
+    "Replacement": lambda: hersey.replacement_age(failures(), 5.0),
     "LifeTestPlan": lambda: hersey.life_test_plan(3.0, shape=2.0, unit="h"),
     "Drift": lambda: hersey.fit_drift(table(other("lubricant", 1, units=2, logs=3))),
     "FilmLife": lambda: shipped.film(1),

@@ -70,6 +70,23 @@ def test_a_specimen_that_is_not_there_is_named_with_those_that_are(folder: Path)
     assert typed(folder, "show", "life.hersey", "U9").stderr == f"hersey: {said}"
 
 
+@pytest.mark.parametrize(
+    ("typed_", "said"),
+    [
+        (["--share", "5 %"], "--share needs the age: add --until '200000 pages'"),
+        (["--share", "5", "--until", "900 pages"], "--share is '5': write a percentage, e.g. '2 %'"),
+        (["--share", "0 %", "--until", "900 pages"], "--share is 0 %: it must be above 0 and below 100 %"),
+        (["--cost-of-failure", "1"], "--cost-of-failure is 1: it must be above 1 and at most 100. It is"),
+    ],
+)
+def test_a_decision_that_cannot_be_asked_for_is_refused(folder: Path, typed_: list[str], said: str) -> None:
+    typed(folder, "add", "life.hersey", "0.csv", *F12)
+    (folder / "machine.toml").write_text((ROOT / "tests" / "stand" / "machine.toml").read_text())
+    done = run("life", "life.hersey", "--machine", "machine.toml", *typed_, cwd=folder)
+    assert done.returncode == 2
+    assert said in " ".join(done.stderr.split())
+
+
 def test_hundreds_are_read_in_processes_of_their_own(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Here three in one process."""
     monkeypatch.setattr(campaign_reading, "FEW", 0)

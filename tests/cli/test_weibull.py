@@ -16,6 +16,7 @@ FAILURES = str(ROOT / "examples" / "failures.csv")
 def test_the_law_and_what_follows_from_it(tmp_path: Path) -> None:
     (tmp_path / "fleet.csv").write_text("age [h],count\n0,100\n200,50\n")
     asked = ["--age", "200 h", "--fleet", "fleet.csv", "--ahead", "50 h", "--demonstrate", "300 h"]
+    asked += ["--cost-of-failure", "10"]
     done = run("weibull", FAILURES, *asked, "--out", "law.csv", "--figure", "plot.svg", cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     for words in (
@@ -23,6 +24,7 @@ def test_the_law_and_what_follows_from_it(tmp_path: Path) -> None:
         "likelihood-ratio bounds, calibrated, 90 % two-sided, 95 % each alone.",
         "A specimen of 200 h has a median remaining life of 348.6",
         "Of 150 specimens",
+        "Whether a planned replacement pays is not yet decided. At 208 h it costs",
         "demonstrate a B10 of 300 h with 90 % confidence",
     ):
         assert words in done.words
@@ -49,6 +51,14 @@ def test_a_test_is_planned_without_a_table(tmp_path: Path) -> None:
         ([FAILURES, "--fleet", FAILURES], "--fleet needs how much further it runs: add e.g. --ahead"),
         ([FAILURES, "--age", "3 pages"], "--age: an age is in pages, but the others are in h"),
         ([FAILURES, "--use", "40 degC"], "--use needs the column of the stress: add --arrhenius COLUMN"),
+        (
+            [FAILURES, "--cost-of-failure", "1"],
+            "--cost-of-failure is 1: it must be above 1 and at most 10000",
+        ),
+        (
+            ["--demonstrate", "3 h", "--shape", "2", "--cost-of-failure", "5"],
+            "without a table of FAILURES only",
+        ),
         ([FAILURES, "--law", "normal"], "law 'normal' is none of weibull, lognormal, gamma"),
         (
             [FAILURES, "--law", "gamma", "--demonstrate", "3 h"],

@@ -40,6 +40,25 @@ def test_what_is_no_age_is_refused(text: str) -> None:
         Age.parse(text)
 
 
+@pytest.mark.parametrize(
+    ("text", "ways"),
+    [
+        ("980,25", "'98025' or '980.25'"),
+        ("1.250,5 h", "'12505 h' or '1250.5 h'"),
+        ("120,000 pages", "'120000 pages' or '120 pages'"),
+        ("1,234 pages", "'1234 pages' or '1.2340 pages'"),
+        ("1 200 h", "'1200 h'"),
+        ("1.250.000", "'1250000'"),
+    ],
+)
+def test_separators_between_digits_are_refused_with_what_to_write(text: str, ways: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        Age.parse(text, "h")
+    assert str(caught.value) == f"age '{text}' has separators between its digits. Write {ways}"
+    for way in ways.split(" or "):
+        assert Age.parse(way.strip("'"), "h").value > 0
+
+
 @pytest.mark.parametrize("text", ["120000", "5 %", "5 pages per day", "5 /h", "5 " + 60 * "p", "5 \x1b[2J"])
 def test_an_age_without_a_unit_that_is_a_word_is_refused(text: str) -> None:
     with pytest.raises(UnitError):

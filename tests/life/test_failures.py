@@ -1,139 +1,40 @@
-"""Laws of failures and suspensions: published numbers, bounds, failure modes, a fleet, the next test."""
+"""Laws of failures and suspensions: bounds, failure modes, a fleet, the next test."""
 
 from __future__ import annotations
 
 import itertools
 import json
 import math
+from functools import cache
 
 import numpy as np
 import pytest
-from scipy import stats
+from scipy import integrate, stats
 
 import hersey
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
+from hersey.life.failures import forecast
 from hersey.life.failures.distributions import DISTRIBUTIONS, LOGNORMAL, WEIBULL
-from hersey.life.failures.fit import age_held, covariance, fitted
-from hersey.life.failures.likelihood import log_between
+from hersey.life.failures.fit import age_held, fitted
+from hersey.life.failures.likelihood import Observed, log_between
+from hersey.life.failures.maximum import maximum
 from hersey.life.failures.positions import positions, steps
+from hersey.life.failures.replicates import drawn
 from hersey.life.failures.test_plan import specimens_for
 from tests.conftest import ROOT
 
-#: NIST/SEMATECH e-Handbook of Statistical Methods, 8.4.1.3 (data of 8.2.2.1), hours.
+#: NIST/SEMATECH e-Handbook of Statistical Methods, 8.2.2.1, hours.
 HANDBOOK = ROOT / "examples" / "failures.csv"
-#: Bearing cages, Meeker and Escobar, Statistical Methods for Reliability Data (1998), table C.5, hours.
-CAGES = [
-    *((50, False, 288), (150, False, 148)),
-    *((250, False, 124), (350, False, 111), (450, False, 106), (550, False, 99), (650, False, 110)),
-    *((750, False, 114), (850, False, 119), (950, False, 127), (1050, False, 123), (1150, False, 93)),
-    *((1250, False, 47), (1350, False, 41), (1450, False, 27), (1550, False, 11), (1650, False, 6)),
-    *((1850, False, 1), (2050, False, 2)),
-    *((age, True, 1) for age in (230, 334, 423, 990, 1009, 1510)),
-]
-#: Life of mylar-polyurethane insulation by voltage, the same, example 19.10.
-MYLAR = {
-    219.0: (15, 16, 36, 50, 55, 95, 122, 129, 625, 700),
-    157.1: (49, 99, 154.5, 180, 291, 447, 510, 600, 1656, 1721),
-    122.4: (188, 297, 405, 744, 1218, 1340, 1715, 3382),
-    100.3: (606, 1012, 2520, 2610, 3988, 4100, 5025, 6842),
-}
 
 
-def of_rows(rows: list[tuple[float, bool, int]]) -> hersey.Failures:
-    ages, failed, count = (np.array(each) for each in zip(*rows, strict=True))
-    return hersey.Failures(ages.astype(float), np.where(failed, ages, np.inf), count, "h")
+@cache
+def handbook() -> hersey.FailureLaw:
+    return hersey.weibull(HANDBOOK)
 
 
 def numbers(law: hersey.FailureLaw) -> list[float]:
     return [each.value for each in law.parameters]
-
-
-def test_the_handbook_of_nist() -> None:
-    """Printed: 1.7208, 606.5280 (4e-4 beside), -75.135, AIC 154.27, of the lognormal law 154.39."""
-    law = hersey.weibull(HANDBOOK)
-    shape, scale = numbers(law)
-    assert round(shape, 4) == 1.7208
-    assert scale == pytest.approx(606.5280, abs=5e-4)
-    assert law.log_likelihood is not None
-    assert round(law.log_likelihood, 3) == -75.135
-    aic = {each.law: round(each.aic, 2) for each in law.comparison}
-    assert (aic["weibull"], aic["lognormal"]) == (154.27, 154.39)
-
-
-def test_likelihood_ratio_bounds_of_a_book() -> None:
-    """Meeker and Escobar, example 8.16: shape 2.035, B10 3903, its 95 % bounds [2093, 22144].
-
-    The lower bound comes out at 2094.3, at which the ratio of likelihoods is that of chi-square to 1e-9.
-    """
-    cages = of_rows(CAGES)
-    assert (cages.specimens, cages.failures) == (1703, 6)
-    law = hersey.weibull(cages, level=0.95, calibrate=False)
-    assert round(numbers(law)[0], 3) == 2.035
-    b10 = law.b_life(0.10)
-    assert round(b10.age) == 3903
-    assert round(b10.high) == 22144
-    assert b10.low == pytest.approx(2093, rel=7e-4)
-    shapes = np.linspace(0.5, 5.0, 20001)
-    scales = b10.low / (-math.log(0.9)) ** (1 / shapes)
-    best = max(
-        sum(
-            count
-            * (stats.weibull_min.logpdf if failed else stats.weibull_min.logsf)(age, shapes, scale=scales)
-            for age, failed, count in CAGES
-        )
-    )
-    assert law.log_likelihood is not None
-    assert 2 * (law.log_likelihood - best) == pytest.approx(stats.chi2.ppf(0.95, 1), abs=1e-5)
-    wider = hersey.weibull(cages, level=0.95).b_life(0.10)
-    assert wider.high > 2 * b10.high
-
-
-def test_ages_between_inspections_of_a_book() -> None:
-    """Meeker and Escobar, example 7.1: exponential, 572.3, standard error 41.72, bounds [498, 662]."""
-    low, high = (
-        np.array([0, 100, 300, 500, 700, 1000, 2000.0]),
-        np.array([100, 300, 500, 700, 1000, 2000, 4000.0]),
-    )
-    sample = hersey.Failures(low, high, np.array([41, 44, 24, 32, 29, 21, 9]), "h")
-    law = hersey.weibull(sample, shape=1.0, level=0.95, calibrate=False)
-    scale = law.parameters[1]
-    assert round(scale.value, 1) == 572.3
-    assert (round(scale.low), round(scale.high)) == (498, 662)
-    error = scale.value * math.sqrt(covariance(law.fits[0])[0, 0])
-    assert round(error, 2) == 41.72
-
-
-def test_a_lognormal_law_of_a_book() -> None:
-    """Meeker and Escobar, p. 199: mu 6.56. Its sigma, 0.543 on ReliaSoft's page, is 0.534 by SciPy, too."""
-    ages, failed = [252, 315, 369, 403, 474, *[500] * 15], [True] * 5 + [False] * 15
-    law = hersey.weibull(ages, failed, law="lognormal")
-    sigma, median = numbers(law)
-    assert round(math.log(median), 2) == 6.56
-    data = stats.CensoredData(uncensored=ages[:5], right=ages[5:])
-    assert sigma == pytest.approx(stats.lognorm.fit(data, floc=0)[0], rel=1e-5)
-
-
-def test_an_inverse_power_of_a_book() -> None:
-    """Meeker and Escobar, example 19.10: -271.4; 95 % Wald bounds [0.83, 1.32], [-5.46, -3.11]."""
-    load = np.repeat(list(MYLAR), [len(each) for each in MYLAR.values()])
-    ages = np.array([age for each in MYLAR.values() for age in each], dtype=float)
-    count = np.ones(ages.size, dtype=int)
-    sample = hersey.Failures(ages, ages, count, "min", (), load, "kV", "power", 50.0)
-    law = hersey.weibull(sample, law="lognormal")
-    assert law.log_likelihood is not None
-    assert round(law.log_likelihood, 1) == -271.4
-    fit = law.fits[0]
-    errors = np.sqrt(covariance(fit).diagonal())
-    sigma = np.exp(-math.log(fit.k) + 1.96 * errors[1] * np.array([-1, 1]))
-    assert sigma.round(2).tolist() == [0.83, 1.32]
-    slope = -fit.c + 1.96 * errors[2] * np.array([-1, 1])
-    assert slope == pytest.approx([-5.46, -3.11], abs=0.006)
-    middle = float(np.average(-np.log(load)))
-    assert fit.m - fit.c * middle == pytest.approx((21.6 + 33.4) / 2, abs=0.05)
-    assert law.acceleration is not None
-    assert law.acceleration.low < 4.289 < law.acceleration.high
-    assert [each.kind for each in law.warnings] == ["stress of use not tested"]
 
 
 def test_an_activation_energy_is_found_again() -> None:
@@ -142,27 +43,37 @@ def test_an_activation_energy_is_found_again() -> None:
     ranks = np.tile((np.arange(12) + 0.5) / 12, 3)
     ages = np.exp(0.7 / (8.617333262e-5 * kelvin) - 15) * (-np.log1p(-ranks)) ** 0.5
     sample = hersey.Failures(ages, ages, np.ones(36, dtype=int), "h", (), kelvin, "K", "arrhenius", 300.0)
-    law = hersey.weibull(sample)
+    law = hersey.weibull(sample, calibrate=False)
     assert law.acceleration is not None
     assert law.acceleration.effect == pytest.approx(0.7, abs=1e-8)
     assert law.acceleration.low < 0.7 < law.acceleration.high
     assert law.acceleration.same_shape == pytest.approx(1.0)
+    assert law.at_use.low == pytest.approx(law.at_use.high)
     places, shares = law.positions  # carried over to 300 K
+    assert places.size == 36
     assert law.share_failed(places) == pytest.approx(shares, abs=0.05)
     ratio = math.exp(0.7 / 8.617333262e-5 * (1 / 300 - 1 / 350))
-    at_350 = hersey.weibull(hersey.Failures(ages[12:24], ages[12:24], np.ones(12, dtype=int)))
+    at_350 = hersey.weibull(ages[12:24], np.ones(12, dtype=bool), calibrate=False)
     assert law.b_lives[1].age == pytest.approx(ratio * at_350.b_lives[1].age, rel=1e-7)
 
 
 def test_failure_modes_at_several_stresses_are_one_law_with_a_warning() -> None:
     kelvin = np.repeat([330.0, 350.0], 6)
-    ages = np.concatenate([np.arange(60.0, 120.0, 10.0), np.arange(30.0, 60.0, 5.0)])
+    ages = np.array([60.0, 70, 80, 90, 100, 110, 12, 30, 35, 40, 45, 70])
     modes = ("wear", "seizure") * 6
     sample = hersey.Failures(ages, ages, np.ones(12, dtype=int), "h", modes, kelvin, "K", "arrhenius", 300.0)
-    law = hersey.weibull(sample)
+    law = hersey.weibull(sample, calibrate=False)
     assert law.modes == ()
     (told,) = [each for each in law.warnings if each.kind == "failure modes under stress"]
     assert set(told.values["modes"].split(", ")) == {"wear", "seizure"}
+    alone = 0.0
+    for own in (ages[:6], ages[6:]):
+        shape, _, scale = stats.weibull_min.fit(own, floc=0)
+        alone += stats.weibull_min.logpdf(own, shape, scale=scale).sum()
+    assert law.acceleration is not None
+    assert law.log_likelihood is not None
+    ratio = 2 * (alone - law.log_likelihood)
+    assert law.acceleration.same_shape == pytest.approx(stats.chi2.sf(ratio, 4 - 3), rel=1e-4)
 
 
 @pytest.mark.parametrize("name", DISTRIBUTIONS)
@@ -186,33 +97,59 @@ def test_laws_agree_with_scipy(name: str) -> None:
     )
 
 
+def test_a_late_interval_keeps_its_digits() -> None:
+    """What fails between two ages that a share of exp(-60) outlives."""
+    low, high = 60 ** (1 / 1.7), 61 ** (1 / 1.7)
+    between = log_between(WEIBULL, np.log([low]), np.log([high]), np.array(1.7))
+    assert between == pytest.approx([-60 + math.log(-math.expm1(-1))], rel=1e-9)
+
+
 def test_an_inspection_of_no_width_is_an_exact_age() -> None:
     ages = np.array([54.0, 187, 216, 240, 500])
     failed = np.array([True, True, True, True, False])
-    exact = hersey.weibull(ages, failed)
+    exact = hersey.weibull(ages, failed, calibrate=False)
     high = np.where(failed, ages * (1 + 1e-5), np.inf)
     narrow = hersey.weibull(hersey.Failures(ages, high, np.ones(5, dtype=int)), calibrate=False)
     assert numbers(narrow) == pytest.approx(numbers(exact), rel=2e-5)
 
 
 def test_calibrated_bounds_are_exact_where_a_test_ends_at_a_failure() -> None:
-    """In 200 samples of 10 that end at the sixth failure the roots of B10 lie within in 90 %."""
-    random = np.random.default_rng(7)
-    truth = math.log((-math.log(0.9)) ** 0.5)
-    drawn = np.sort(random.weibull(2.0, (200, 10)), axis=1)
-    low = np.append(drawn[0, :6], drawn[0, 5])
-    high = np.append(drawn[0, :6], np.inf)
-    plan = hersey.Failures(low, high, np.append(np.ones(6, dtype=int), 4))
-    ends = fitted(WEIBULL, plan)._roots(np.array([0.1]), 0.9, age_held, 0.0)
-    inside = 0
-    for row in drawn:
-        own = hersey.Failures(np.append(row[:6], row[5]), np.append(row[:6], np.inf), plan.count)
-        fit = fitted(WEIBULL, own)
-        root = fit._root(
-            fit.problem(np.array([0.1])), np.log(fit.age([0.1])), np.array([truth]), age_held, []
-        )
-        inside += bool(ends[0][0] <= root[0] <= ends[1][0])
-    assert 0.86 <= inside / 200 <= 0.94
+    """In 2,000 samples of 10 that end at the sixth failure the roots of B10 lie within in 90 %."""
+    truth, samples = np.array(math.log((-math.log(0.9)) ** 0.5)), 2000
+    samples_of = np.log(np.sort(np.random.default_rng(7).weibull(2.0, (samples, 10)), axis=1))
+    ages = np.exp(samples_of[0, [*range(6), 5]])
+    count = np.array([1, 1, 1, 1, 1, 1, 4])
+    fit = fitted(WEIBULL, hersey.Failures(ages, np.append(ages[:6], np.inf), count))
+    low, high = fit._roots(np.array([0.1]), 0.9, age_held, 0.0)
+    own = Observed(
+        exact=samples_of[:, :6],
+        right=samples_of[:, 5:6],
+        exact_count=np.ones(6),
+        right_count=np.array([4.0]),
+        exact_stress=np.zeros(6),
+        right_stress=np.zeros(1),
+    )
+    free = fit.problem(0.1, of=own)
+    held = age_held(free, truth)
+    at, best = maximum(free.function(), np.tile(fit.start(free), (samples, 1)))
+    _, of_truth = maximum(held.function(), np.tile(fit.start(held), (samples, 1)))
+    roots = np.sign(at[:, 0] - truth) * np.sqrt(2 * np.maximum(best - of_truth, 0))
+    assert ((low <= roots) & (roots <= high)).mean() == pytest.approx(0.9, abs=0.02)
+    assert (roots < low).mean() == pytest.approx(0.05, abs=0.015)
+
+
+def test_drawn_specimens_are_looked_at_as_long_as_the_real_ones() -> None:
+    """Five are withdrawn after the look at 5, ten others are looked at until 10."""
+    low, high = np.array([0.0, 5, 10, 5]), np.array([5.0, 10, np.inf, np.inf])
+    looked_at = hersey.Failures(low, high, np.array([3, 3, 4, 5]))
+    truth = (math.log(8.0), 2.0, 0.0)
+    of = drawn(WEIBULL, looked_at, np.zeros(4), truth, 4000, np.random.default_rng(1))
+    assert np.exp(of.high[0]).tolist() == pytest.approx([5, np.inf, 5, 10, np.inf])
+    assert set(of.between_count[:, :2].sum(axis=1)) == {5.0}
+    assert set(of.between_count[:, 2:].sum(axis=1)) == {10.0}
+    outlive = np.exp(-((np.array([0, 5, 10]) / 8) ** 2))
+    expected = [5 * (1 - outlive[1]), 5 * outlive[1], *(-10 * np.diff(outlive)), 10 * outlive[2]]
+    assert of.between_count.mean(axis=0) == pytest.approx(expected, abs=0.1)
 
 
 def test_failure_modes_are_fitted_apart_and_joined() -> None:
@@ -223,10 +160,15 @@ def test_failure_modes_are_fitted_apart_and_joined() -> None:
     names = (*(mode for _, mode in rows), "")
     law = hersey.weibull(hersey.Failures(ages, high, count, "h", names))
     assert [(each.mode, each.failures) for each in law.modes] == [("wear", 4), ("seizure", 2)]
-    wear = hersey.weibull(np.repeat(ages, count), np.repeat([name == "wear" for name in names], count))
+    of_wear = np.repeat([name == "wear" for name in names], count)
+    wear = hersey.weibull(np.repeat(ages, count), of_wear, calibrate=False)
     assert [p.value for p in law.modes[0].parameters] == pytest.approx(numbers(wear), rel=1e-9)
     outlive = [1 - fit.share(300.0) for fit in law.fits]
     assert law.share_failed(300.0) == pytest.approx(1 - np.prod(outlive), rel=1e-12)
+    at = law.reliability(300.0)
+    drawn_shares = np.exp(sum(each.log_survival(np.array(300.0)) for each in law.draws))
+    assert at.share == pytest.approx(np.prod(outlive), rel=1e-12)
+    assert (at.low, at.high) == pytest.approx(np.quantile(drawn_shares, [0.05, 0.95]), rel=1e-9)
     b10 = law.b_lives[0]
     assert law.share_failed(b10.age) == pytest.approx(0.10, rel=1e-9)
     assert b10.low < b10.age < b10.high
@@ -255,6 +197,7 @@ def test_turnbull_is_kaplan_and_meier_of_exact_ages() -> None:
     by_product = 1 - np.cumprod([1 - first, 1 - second, 1 - third])
     assert shares == pytest.approx(by_product, rel=1e-6)
     mixed = hersey.Failures(np.array([10.0, 5, 20]), np.array([10.0, 12, 20]), np.ones(3, dtype=int))
+    assert dict(zip(*(each.tolist() for each in steps(mixed)), strict=True))[10] == pytest.approx(2 / 3)
     assert steps(mixed)[1][-1] == pytest.approx(1.0)
 
 
@@ -272,6 +215,20 @@ def test_how_well_a_law_fits() -> None:
     assert law.goodness is not None
     assert law.goodness.statistic == pytest.approx(anderson(ages, *numbers(law)), rel=1e-9)
     assert law.goodness.p_value > 0.3
+    withdrawn = np.isin(np.arange(12), [0, 3, 4, 8, 11])
+    law = hersey.weibull(ages, ~withdrawn)
+    assert law.goodness is not None
+    failed, left = (
+        ages[~withdrawn],
+        np.array([11.0, 10, 7, 6, 5, 3, 2]),
+    )  # of 12, the first was withdrawn early
+    shares = np.append(0.0, 1 - np.cumprod(1 - 1 / left))
+    ends = np.append(0.0, stats.weibull_min.cdf(failed, numbers(law)[0], scale=numbers(law)[1]))
+    parts = [
+        integrate.quad(lambda f, share=share: (share - f) ** 2 / (f * (1 - f)), begin, end)[0]
+        for share, begin, end in zip(shares[:-1], ends[:-1], ends[1:], strict=True)
+    ]
+    assert law.goodness.statistic == pytest.approx(11 * sum(parts), rel=1e-6)
     split = np.concatenate([np.linspace(1, 1.2, 8), np.linspace(100, 120, 8)])
     bad = hersey.weibull(split, np.ones(16, dtype=bool))
     assert bad.goodness is not None
@@ -289,20 +246,23 @@ def test_reliability_has_the_bounds_of_ages() -> None:
 
 
 def test_the_remaining_life_of_a_specimen() -> None:
-    law = hersey.weibull(HANDBOOK)
+    law = handbook()
     shape, scale = numbers(law)
     found = hersey.remaining_life(law, 200.0)
     median = scale * ((200 / scale) ** shape + math.log(2)) ** (1 / shape) - 200
     assert found.median == pytest.approx(median, rel=1e-9)
     assert found.earliest < found.low < found.median < found.high < found.latest
+    outlive = np.exp((200 / scale) ** shape - ((200 + found.ahead) / scale) ** shape)
+    assert found.outlive == pytest.approx(outlive, rel=1e-9)
     new = hersey.remaining_life(law, 0.0)
     b50 = law.b_lives[1]
     assert new.median == pytest.approx(b50.age, rel=1e-9)
     assert (new.low, new.high) == pytest.approx((b50.low, b50.high), rel=0.06)
 
 
-def test_a_fleet() -> None:
-    law = hersey.weibull(HANDBOOK)
+def test_a_fleet(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(forecast, "_POINTS", 4)
+    law = handbook()
     ages, count = np.array([0.0, 100.0, 300.0]), np.array([200, 150, 50])
     found = hersey.fleet_forecast(law, ages, 50.0, count=count)
     shape, scale = numbers(law)
@@ -314,8 +274,16 @@ def test_a_fleet() -> None:
     assert found.high[-1] - found.low[-1] > alone[1] - alone[0]
     assert (np.diff(found.low) >= 0).all()
     assert (np.diff(found.high) >= 0).all()
-    apart = hersey.fleet_forecast(law, np.repeat(ages, count), 50.0)
-    assert abs(apart.high[-1] - found.high[-1]) <= 2
+    few = count // 25
+    apart = hersey.fleet_forecast(law, np.repeat(ages, few), 50.0)
+    assert apart.specimens == 16
+    (possible,) = law.draws
+    kept = np.exp(
+        few
+        @ (possible.log_survival(ages[:, None] + 50) - possible.log_survival(np.maximum(ages, 1e-9)[:, None]))
+    )
+    assert apart.none == pytest.approx(kept.mean(), abs=0.03)
+    assert apart.expected[-1] == pytest.approx(found.expected[-1] / 25, rel=1e-9)
 
 
 def test_a_demonstration_is_the_least_that_convinces() -> None:
@@ -327,6 +295,9 @@ def test_a_demonstration_is_the_least_that_convinces() -> None:
         enough, fewer = (stats.binom.cdf(each.allowed, each.specimens - less, failed) for less in (0, 1))
         assert enough <= 0.1 < fewer
     assert specimens_for(1.0, 0, 1.0, 0.10, 0.95) == 29
+    ages = -np.log1p(-(np.arange(1, 4) - 0.5) / 5)  # half of five fail; each bound at 90 %
+    half = hersey.weibull([*ages, ages[-1], ages[-1]], [True] * 3 + [False] * 2, level=0.8).b_life(0.10)
+    assert plan.precision[0].half_fail ** 2 == pytest.approx(half.high / half.low, rel=1e-6)
     ratios = [each.all_fail for each in plan.precision]
     assert all(after < before for before, after in itertools.pairwise(ratios))
 
@@ -355,6 +326,26 @@ def test_too_few_failures_give_no_law(ages: list[float], failed: list[bool], wor
             asked()
 
 
+def test_found_failed_at_any_age_alike_gives_no_law() -> None:
+    """Both found failed by 10 and 20 may have failed at once, and the one of 30 never."""
+    low, high = np.array([0.0, 0, 30]), np.array([10.0, 20, np.inf])
+    law = hersey.weibull(hersey.Failures(low, high, np.ones(3, dtype=int), "h"))
+    assert not law.is_known
+    assert "The share failed hardly grows with age" in law.summary()
+
+
+def test_the_greatest_numbers_do_no_harm(recwarn: pytest.WarningsRecorder) -> None:
+    law = hersey.weibull([1e300, 1e-300, 5.0], [True] * 3, calibrate=False)
+    assert not recwarn.list
+    json.dumps(law.to_dict(), allow_nan=False)
+
+
+def test_up_to_three_failures_are_few() -> None:
+    for count, kinds in ((3, ["few failures"]), (4, [])):
+        law = hersey.weibull([50.0, 90.0, 120.0, 160.0][:count], [True] * count, calibrate=False)
+        assert [each.kind for each in law.warnings] == kinds
+
+
 def test_one_failure_is_enough_where_the_shape_is_known() -> None:
     """The scale is (sum of ages^shape over failures)^(1/shape)."""
     law = hersey.weibull([10.0, 20.0, 30.0], [False, True, False], shape=2.0, unit="h")
@@ -365,8 +356,14 @@ def test_one_failure_is_enough_where_the_shape_is_known() -> None:
 def test_the_same_seed_gives_the_same_bits() -> None:
     one, other = (hersey.weibull(HANDBOOK, seed=seed) for seed in (3, 3))
     assert one.to_dict() == other.to_dict()
-    wide, narrow = (hersey.weibull(HANDBOOK, level=level).b_lives[0] for level in (0.95, 0.5))
-    assert wide.low < narrow.low < narrow.high < wide.high
+    wide, narrow = (one.fits[0].bounds(np.array([0.1]), level, age_held) for level in (0.95, 0.5))
+    assert wide[0] < narrow[0] < narrow[1] < wide[1]
+
+
+def test_the_scale_of_a_gamma_law_has_the_bounds_of_its_draws() -> None:
+    law = hersey.weibull([54.0, 187, 216, 240, 335], [True] * 5, law="gamma", level=0.8)
+    ends = np.quantile(np.exp(law.draws[0].m), [0.1, 0.9])
+    assert (law.parameters[1].low, law.parameters[1].high) == pytest.approx(ends, rel=1e-12)
 
 
 def test_another_law_that_fits_better_is_named() -> None:
@@ -386,11 +383,11 @@ def test_another_law_that_fits_better_is_named() -> None:
         (lambda: hersey.weibull([1.0], [True], level=90), "level is 90"),
         (lambda: hersey.weibull([1.0], [True], shape=-1.0), "shape is -1"),
         (lambda: hersey.weibull([1.0], [True], law="normal"), "law 'normal' is none of weibull"),
-        (lambda: hersey.weibull(HANDBOOK).b_life(10), "share is 10"),
-        (lambda: hersey.weibull(HANDBOOK).reliability(0), "age is 0"),
-        (lambda: hersey.fleet_forecast(hersey.weibull(HANDBOOK), [1.0, -1.0], 5.0), "age 1 is -1"),
-        (lambda: hersey.fleet_forecast(hersey.weibull(HANDBOOK), [1.0], 0.0), "ahead is 0"),
-        (lambda: hersey.remaining_life(hersey.weibull(HANDBOOK), -1.0), "age is -1"),
+        (lambda: handbook().b_life(10), "share is 10"),
+        (lambda: handbook().reliability(0), "age is 0"),
+        (lambda: hersey.fleet_forecast(handbook(), [1.0, -1.0], 5.0), "age 1 is -1"),
+        (lambda: hersey.fleet_forecast(handbook(), [1.0], 0.0), "ahead is 0"),
+        (lambda: hersey.remaining_life(handbook(), -1.0), "age is -1"),
         (lambda: hersey.life_test_plan(0.0, shape=2.0), "target is 0"),
         (lambda: hersey.life_test_plan(1.0, shape=2.0, share=1.5), "share is 1.5"),
     ],

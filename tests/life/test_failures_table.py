@@ -42,12 +42,50 @@ def test_ages_exact_at_least_and_at_most(text: str, tmp_path: Path) -> None:
     assert found == [(10, 10, 1), (20, math.inf, 3), (0, 30, 2)]
 
 
+#: Sheets of other programs, with the same specimens: one failed, three that run, two found failed.
+SHEETS = {
+    "Minitab": "Hours,Cens,Freq\n10,F,1\n20,C,3\n30,left,2\n",
+    "Minitab, arbitrary": "Start [h],End [h],Frequency\n10,10,1\n20,*,3\n*,30,2\n",
+    "Weibull++": "Number in State,Last Inspected (h),State F or S,State End Time\n"
+    "1,10,F,10\n3,0,S,20\n2,0,F,30\n",
+    "R": '"","time [h]","event","n"\n"1",10,1,1\n"2",20,0,3\n"3",30,left,2\n',
+    "R, both ends": "left [h],right,n\n10,10,1\n20,Inf,3\nNA,30,2\n",
+}
+
+
+@pytest.mark.parametrize("program", SHEETS)
+def test_sheets_of_other_programs(program: str, tmp_path: Path) -> None:
+    path = table(tmp_path, SHEETS[program])
+    assert ends(path) == [(10, 10, 1), (20, math.inf, 3), (0, 30, 2)]
+    assert hersey.read_failures(path).unit == ("hours" if program == "Minitab" else "h")
+
+
+def test_own_names_go_before_those_of_other_programs(tmp_path: Path) -> None:
+    text = "time,start,end,age [h],status,cens,n,count\n1,2,3,10,failed,S,7,1\n1,2,3,20,running,F,7,3\n"
+    assert ends(table(tmp_path, text)) == [(10, 10, 1), (20, math.inf, 3)]
+
+
+def test_one_and_zero_of_a_status_are_asked_about_and_the_advice_helps(tmp_path: Path) -> None:
+    text = "time [h],status\n10,1\n20,0\n"
+    with pytest.raises(HerseyError) as caught:
+        ends(table(tmp_path, text))
+    assert "line 2, column 'status' is '1': write failed or running in each row, or name the column" in str(
+        caught.value
+    )
+    for name, failed in (("failed", 10.0), ("censored", 20.0)):
+        assert f"'{name}' if 1 means" in str(caught.value)
+        found = hersey.read_failures(table(tmp_path, text.replace("status", name)))
+        assert found.low[found.failed].tolist() == [failed]
+
+
 def test_failed_and_censored_say_it_too(tmp_path: Path) -> None:
     expected = [(10.0, 10.0, 1), (20.0, math.inf, 1)]
     for text in (
         "age [h],failed\n10,1\n20,0\n",
         "age [h],censored\n10,no\n20,yes\n",
         "age [h],mode\n10,wear\n20,\n",
+        ",age [h],failed,count\n0,10.0,1.0,1.0\n1,20.0,0.0,1.0\n",
+        "age [h],status\n,\n10,failed\n\n20,running\n , \n",
     ):
         assert ends(table(tmp_path, text)) == expected
 
@@ -76,8 +114,13 @@ def test_a_failure_between_inspections_by_another_mode_outlived_the_first_one(tm
 #: Text of a table, and what is said of it.
 REFUSED = {
     "age,status\n10,failed\n": "failures.csv, line 2, column 'age': age '10' has no unit",
+    "Time,Event\n10,1\n": "line 2, column 'Time': age '10' has no unit",
+    "age [h],failed\n10,F\n": "line 2, column 'failed' is 'F': write yes or no",
+    "start [h],end [h],status\n10,,F\n": "line 2, column 'end' is empty, but it failed. Fill it in",
+    "age status\n10 F\n": "'age status'. Separate columns by commas, e.g. 'age,status'",
+    "time,lifetime,status\n10,10,F\n": "columns 'time' and 'lifetime' both say the age",
     "age [h]\n10\n": "failures.csv: no column says which specimens failed. Columns: 'age [h]'",
-    "hours,status\n10,failed\n": "failures.csv: there is no column 'age'. Columns: 'hours', 'status'",
+    "duration,status\n10,failed\n": "failures.csv: there is no column 'age'. Columns: 'duration', 'status'",
     "low [h]\n10\n": "failures.csv: there is no column 'high'. Columns: 'low [h]'",
     "age [h],low [h],high [h]\n1,1,1\n": "columns of 'age' and of 'low' or 'high'",
     "age [h],status,failed\n1,failed,1\n": "column 'failed' says again which specimens failed",

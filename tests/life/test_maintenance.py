@@ -6,6 +6,7 @@ import json
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,16 @@ import polars as pl
 import pytest
 
 import hersey
+from hersey.charts.growth import growth_chart
 from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
 from hersey.life.campaign.store import SCHEMAS
+from hersey.life.growth.limit_ages import Earliest
 from hersey.life.indicator import Indicator, Indicators, Runs
 from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event
 from hersey.life.time_to_failure.estimate import time_to_failure
+from hersey.life.time_to_failure.way import FittedWay
 from tests.cli.command import run
 from tests.life import shipped
 from tests.life.shipped import fewer
@@ -82,6 +86,25 @@ def test_growth_begins_anew_from_a_re_greasing(monkeypatch: pytest.MonkeyPatch) 
     # without the event the same runs show a slower growth, and nothing of the truth
     without = time_to_failure(Indicators(runs(), (torque(300.0),)))
     assert {e.unit: e.age for e in without.units}["F3"].age.value > 1.2 * ends["F3"].age.value
+
+
+def test_the_chart_shows_the_age_of_the_specimen_and_a_mark_at_the_event(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fewer(monkeypatch)
+    (mode,) = time_to_failure(Indicators(runs(GREASED), (torque(300.0),))).modes
+    of_f3 = [each for each in mode.stretches if each.unit == "F3"]
+    assert [(each.name, each.begun) for each in of_f3] == [("F3 before 300", 0.0), ("F3", 300.0)]
+    drawn = growth_chart(mode.growth, ages=mode.ages, stretches=mode.stretches).to_dict()
+    panels = {panel["title"]["text"]: panel for row in drawn["vconcat"] for panel in row["hconcat"]}
+    assert list(panels) == [f"F{i}" for i in range(1, 7)]
+    values = [layer["data"]["values"] for layer in panels["F3"]["layer"]]
+    seen = [row["age"] for rows in values for row in rows if row.keys() == {"age", "value"}]
+    assert seen == AGES.tolist()
+    assert [{"age": 300.0}] in values
+    curves = [[row["age"] for row in rows] for rows in values if len(rows) > 7 and "median" in rows[0]]
+    assert max(curves[0]) <= 300.0 == min(curves[-1])
+    assert time_to_failure(Indicators(runs(), (torque(300.0),))).modes[0].stretches == ()
 
 
 def test_damage_goes_back_with_new_parts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -229,3 +252,13 @@ def test_a_renewed_layer_thins_from_its_own_age(monkeypatch: pytest.MonkeyPatch)
     assert np.isnan(found.curves[0].value[0, young]).all()
     assert np.isfinite(found.curves[0].value[0, ~young]).all()
     assert np.isfinite(found.curves[0].value[1:]).all()
+
+
+def test_values_foretold_count_from_the_last_event() -> None:
+    asked: list[tuple[int, list[float]]] = []
+    growth = SimpleNamespace(drawn_values=lambda row, age: asked.append((row, age.tolist())))
+    mode: Any = SimpleNamespace(growth=growth)
+    none = np.zeros((1, 2))
+    way = FittedWay(mode, none, none, none[0], {"U1": 1}, 0.1, {"U1": 300.0}, Earliest.unknown(1))
+    way.drawn_values("U1", np.array([300.0, 500.0]))
+    assert asked == [(1, [0.0, 200.0])]

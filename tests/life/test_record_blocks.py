@@ -36,6 +36,13 @@ def test_noise_that_wanders_long_makes_fewer_blocks() -> None:
     assert long < 35
 
 
+def test_errors_are_shares_of_the_values() -> None:
+    record = 1.0 + 0.02 * wander(0.5, 3)
+    one, ten = blocks_of_record(TIME, record), blocks_of_record(TIME, 10.0 * record)
+    assert ten.value == pytest.approx(10.0 * one.value)
+    assert ten.error == pytest.approx(one.error)
+
+
 def test_a_record_without_noise_has_no_error() -> None:
     blocks = blocks_of_record(TIME, np.full(TIME.size, 2.0))
     assert blocks.value == pytest.approx(2.0)

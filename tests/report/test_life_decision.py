@@ -34,7 +34,6 @@ def row(age: tuple[float, float, float], passed: float) -> dict[str, Any]:
         ((120.0, 0.0, 196.0), 0.83, "watch", "Unclear, 83 %", "before 196"),
         ((240.0, 225.0, 260.0), 0.05, "good", "Running", "240"),
         ((900.0, 300.0, 2000.0), 0.0, "good", "Running", "after 300"),
-        ((900.0, 600.0, 2000.0), 0.0, "good", "Running", "after 510"),  # three times the age followed
         ((np.inf, 800.0, np.inf), 0.0, "good", "Running", "after 800"),
     ],
 )

@@ -38,6 +38,7 @@ trend            friction against age at one speed
 drift            what moved with age, a panel per quantity
 film_life        the film of units that age, and the layer of oil that feeds it
 growth           growth with age, and the ages at a limit
+replacement      cost against the age of a planned replacement
 time_to_failure  failure modes against age
 other_uses       the ages in other uses of the machine
 ===============  ==========================================================================
@@ -84,6 +85,7 @@ CHARTS = {
     "FailureLaw": ("failures", "law_chart"),
     "RemainingLife": ("failures", "remaining_chart"),
     "FleetForecast": ("failures", "fleet_chart"),
+    "Replacement": ("replacement", "replacement_chart"),
     "LifeTestPlan": ("failures", "plan_chart"),
     "OtherUses": ("other_uses", "other_uses_chart"),
     "AgeingMaps": ("ageing_maps", "ageing_maps_chart"),

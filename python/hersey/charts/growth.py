@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import altair as alt
 import numpy as np
 
+from hersey.arrays import FloatArray
 from hersey.charts.style import (
     BLUE,
     DIAMOND,
@@ -23,8 +25,9 @@ from hersey.charts.style import (
     tip,
 )
 from hersey.errors import capital
-from hersey.life.growth.fit import Growth
+from hersey.life.growth.fit import Growth, GrowthCurves
 from hersey.life.growth.limit_ages import AgeAtLimit, AgesAtLimit
+from hersey.life.maintenance import Stretch
 
 #: Units shown, panels in a row, and pixels of each where there are several.
 _SHOWN, _COLUMNS, _GAP, _HEIGHT = 12, 4, 58, 150
@@ -45,21 +48,28 @@ class _Axes(NamedTuple):
     end: float
 
 
-def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "") -> Chart:
+def growth_chart(
+    growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "", stretches: Sequence[Stretch] = ()
+) -> Chart:
     """Return the growth of each specimen, one panel each; with ``ages`` also where it reaches the limit.
 
-    Of many units the first are shown. ``si`` is the unit of the values.
+    Of many specimens the first are shown. ``si`` is the unit of the values. ``stretches`` says which units of
+    the growth are parts of one specimen, between maintenance.
     """
-    count = min(len(growth.units), _SHOWN)
+    panels = _panels(growth, stretches)
+    count = min(len(panels), _SHOWN)
     by_unit = {each.unit: each for each in ages.units} if ages else {}
-    known = [by_unit[unit] for unit in growth.units[:count] if unit in by_unit]
-    end = axis_end(max(growth.last_age), [each.age.value for each in known])
+    shown = dict(list(panels.items())[:count])
+    known = [by_unit[unit] for unit in shown if unit in by_unit]
+    last = max(begun + growth.last_age[i] for parts in panels.values() for i, begun in parts)
+    end = axis_end(last, [each.age.value for each in known])
     at = np.linspace(0.0, end, _POINTS)
     curves, runs = growth.at(at), growth.runs_of_units()
     line = ages.limit if ages and not ages.accumulates else None
     columns = min(count, _COLUMNS)
-    values = np.concatenate([value for _, value in runs[:count]])
-    top = _FREE * max(float(values.max()), line or float(curves.median[:count, -1].min()))
+    drawn = [i for parts in shown.values() for i, _ in parts]
+    values = np.concatenate([runs[i][1] for i in drawn])
+    top = _FREE * max(float(values.max()), line or float(curves.median[drawn, -1].min()))
     steep = top > _STEEP * float(values.min())
     bottom = float(values.min()) / _FREE if steep else 0.0
     axes = _Axes(
@@ -69,14 +79,10 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
         alt.Scale(domain=[bottom, top], nice=not steep, type="log" if steep else "linear"),
         end,
     )
-    panels = []
-    for i, unit in enumerate(growth.units[:count]):
-        # Far above the axis a drawing would overflow.
-        ends = {name: np.minimum(getattr(curves, name)[i], 10.0 * top) for name in ("low", "median", "high")}
-        band = rows_of(age=at, **ends)
-        title = _values(growth, si, short=count > 1) if i % columns == 0 else None
-        seen = rows_of(age=runs[i][0], value=runs[i][1])
-        layers = _curve(growth, band, seen, axes, title, _unit(si))
+    made = []
+    for k, (unit, parts) in enumerate(shown.items()):
+        title = _values(growth, si, short=count > 1) if k % columns == 0 else None
+        layers = _grown(growth, curves, runs, parts, at, axes, title, _unit(si), 10.0 * top)
         if line is not None:
             rule = plot([{"value": line}]).mark_rule(color=INK, strokeDash=[4, 3])
             layers.append(rule.encode(y=alt.Y("value:Q", title=title)))
@@ -84,10 +90,50 @@ def growth_chart(growth: Growth, *, ages: AgesAtLimit | None = None, si: str = "
             reached, height = by_unit[unit], line if line is not None else top / _FREE
             layers += _age(reached, height, axes, title, growth.age_unit)
         name = alt.Title(unit, fontSize=12)
-        panels.append(alt.layer(*layers, title=name, width=axes.width, height=axes.height))
-    rows = [alt.hconcat(*panels[i : i + columns], spacing=12) for i in range(0, count, columns)]
+        made.append(alt.layer(*layers, title=name, width=axes.width, height=axes.height))
+    rows = [alt.hconcat(*made[i : i + columns], spacing=12) for i in range(0, count, columns)]
     heading = f"Growth of {growth.quantity}" + (f" ({si.replace(' ', '·')})" if si else "")
-    return alt.vconcat(*rows, title=alt.Title(heading, subtitle=_heading(growth, ages)), spacing=10)
+    subtitle = _heading(growth, ages, len(panels), serviced=any(len(parts) > 1 for parts in panels.values()))
+    return alt.vconcat(*rows, title=alt.Title(heading, subtitle=subtitle), spacing=10)
+
+
+def _panels(growth: Growth, stretches: Sequence[Stretch]) -> dict[str, list[tuple[int, float]]]:
+    """For each specimen its units of the growth, and the age at which each began, in their order."""
+    known = {each.name: each for each in stretches}
+    panels: dict[str, list[tuple[int, float]]] = {}
+    for i, name in enumerate(growth.units):
+        of = known.get(name, Stretch(name, name, 0.0))
+        panels.setdefault(of.unit, []).append((i, of.begun))
+    return {unit: sorted(parts, key=lambda part: part[1]) for unit, parts in panels.items()}
+
+
+def _grown(
+    growth: Growth,
+    curves: GrowthCurves,
+    runs: list[tuple[FloatArray, FloatArray]],
+    parts: list[tuple[int, float]],
+    at: FloatArray,
+    axes: _Axes,
+    title: str | None,
+    unit: str,
+    most: float,
+) -> list[alt.Chart]:
+    """Runs and curve of a specimen, growing anew at each maintenance; nothing above ``most``."""
+    layers: list[alt.Chart] = []
+    ends = [*(begun for _, begun in parts[1:]), math.inf]
+    for (i, begun), until in zip(parts, ends, strict=True):
+        inside = begun + at <= until
+        drawn = {name: getattr(curves, name)[i][inside] for name in ("low", "median", "high")}
+        band = rows_of(
+            age=begun + at[inside], **{name: np.minimum(each, most) for name, each in drawn.items()}
+        )
+        seen = rows_of(age=begun + runs[i][0], value=runs[i][1])
+        layers += _curve(growth, band, seen, axes, title, unit)
+    events = [{"age": begun} for _, begun in parts if begun > 0.0]
+    if events:
+        mark = plot(events).mark_rule(color=INK, strokeDash=[2, 2])
+        layers.append(mark.encode(x=alt.X("age:Q", scale=axes.age)))
+    return layers
 
 
 def _values(growth: Growth, si: str, *, short: bool) -> str:
@@ -150,13 +196,15 @@ def _age(
     return layers
 
 
-def _heading(growth: Growth, ages: AgesAtLimit | None) -> list[str]:
+def _heading(growth: Growth, ages: AgesAtLimit | None, count: int, *, serviced: bool) -> list[str]:
     words = ["points: runs; lines and bands: each specimen, 90 %"]
+    if serviced:
+        words[0] += "; dotted: maintenance, from which it grows anew"
     if ages:
         reached = "where the sum over age reaches the limit" if ages.accumulates else "at the dashed limit"
         words.append(f"diamonds: age {reached}, with 90 % interval")
-    if len(growth.units) > _SHOWN:
-        words.append(f"{_SHOWN} of {len(growth.units)} specimens are shown")
+    if count > _SHOWN:
+        words.append(f"{_SHOWN} of {count} specimens are shown")
     return [growth.headline(), *words]
 
 

@@ -26,12 +26,16 @@ def life_charts(answer: LifeTest) -> dict[str, Chart]:
     with unchecked():
         made = {"ends": chart_of(found)}
         for number, mode in enumerate(likely[:_GROWN], 1):
-            made[f"growth_{number}"] = chart_of(mode.growth, ages=mode.ages, si=mode.si)
+            made[f"growth_{number}"] = chart_of(
+                mode.growth, ages=mode.ages, si=mode.si, stretches=mode.stretches
+            )
         for name in ("drift", "film", "maps"):
             if (part := getattr(answer, name)) is not None:
                 made[name] = chart_of(part)
         if found.curve is not None:
             made["population"] = failures_chart(found.units, found.curve, found.age_unit)
+        if found.replacement is not None:
+            made["replacement"] = chart_of(found.replacement)
     return made
 
 

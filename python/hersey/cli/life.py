@@ -10,6 +10,7 @@ from hersey.cli.options import Figures, Force
 from hersey.cli.outputs import PAGES, command, may_write, may_write_folder
 from hersey.cli.printing import Printing
 from hersey.cli.progress import steps, working
+from hersey.cli.quantities import share as share_of
 
 if TYPE_CHECKING:
     from hersey.life.time_to_failure.estimate import TimeToFailure
@@ -18,6 +19,8 @@ _CAMPAIGN = "Campaign file, made by 'hersey campaign add'."
 _MACHINE = "Machine file with limits, operating points, contact and lubricant."
 _UNIT = "Specimen whose maps are drawn.  [default: the next to fail]"
 _UNTIL = "Find the run that best shows which specimens last until this age, e.g. '250000 pages'."
+_SHARE = "Decide whether at most this share of new specimens fails before --until, e.g. '5 %'."
+_COST = "Cost of a failure over that of a planned replacement (a pure number): find when to replace."
 #: Specimens in the table, and pieces of advice.
 _SHOWN, _ADVISED = 10, 2
 
@@ -31,6 +34,8 @@ def life(
     figures: Figures = None,
     unit: Annotated[str, option(_UNIT)] = "",
     until: Annotated[str, option(_UNTIL)] = "",
+    share: Annotated[str, option(_SHARE)] = "",
+    cost_of_failure: Annotated[float | None, option(_COST)] = None,
     seed: Annotated[int, option("Random seed.", min=0)] = 0,
     printing: Printing,
     force: Force = False,
@@ -50,11 +55,20 @@ def life(
     from hersey.life.indicator import NOT_JUDGED
     from hersey.machine.machine import read_machine
 
+    allowed = share_of("--share", share) if share else None
     machine = read_machine(machine_file, drivetrain=False)
     with Campaign.open(file, write=False) as campaign:
         with steps() as step:
             answer = follow(
-                campaign, machine, seed=seed, unit=unit, until=until or None, uses=page is not None, step=step
+                campaign,
+                machine,
+                seed=seed,
+                unit=unit,
+                until=until or None,
+                share=allowed,
+                cost_of_failure=cost_of_failure,
+                uses=page is not None,
+                step=step,
             )
         runs = campaign.runs()
     if page is not None:
@@ -78,7 +92,8 @@ def life(
         printing.warnings(*(each for each in warnings if each.kind != NOT_JUDGED))
         printing.text(*(f"- Not judged: {each.sentence}" for each in warnings if each.kind == NOT_JUDGED))
         printing.text(
-            *(f"Next: {each}." for each in found.advice[:_ADVISED]), *filter(None, [found.planning()])
+            *(f"Next: {each}." for each in found.advice[: _ADVISED + len(found.deciding_runs)]),
+            *filter(None, [found.planning()]),
         )
     printing.files(page, figures)
 
@@ -87,7 +102,7 @@ def _lines(found: TimeToFailure) -> list[str]:
     """When specimens fail and by what, then each specimen."""
     from hersey.cli.figures import labelled
 
-    lines = list(filter(None, [found.headline(), found.of_new()]))
+    lines = list(filter(None, [found.headline(), found.of_new(), *found.answers(), found.of_followed()]))
     lines.append(f"Age at failure ({found.age_unit or 'age'}), 90 % interval:")
     ends = [(each.unit, str(each).removeprefix(f"{each.unit}: ")) for each in found.units[:_SHOWN]]
     lines += labelled(ends)

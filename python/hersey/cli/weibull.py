@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hersey.life.failures.forecast import FleetForecast, RemainingLife
     from hersey.life.failures.law import FailureLaw
     from hersey.life.failures.test_plan import LifeTestPlan
+    from hersey.life.replacement import Replacement
 
 _FAILURES = "Table of specimens: age and status (failed or running), or low and high."
 _LAW = "Law to fit: weibull, lognormal or gamma."
@@ -31,6 +32,7 @@ _AGE = "Give the remaining life of a specimen of this age, e.g. '120000 pages'."
 _FLEET = "Table of specimens that run (age, count): forecast their failures; needs --ahead."
 _AHEAD = "How much further the fleet runs, e.g. '50000 pages'."
 _DEMONSTRATE = "Plan a test that demonstrates this B10, e.g. '100000 pages'."
+_COST = "Cost of a failure over that of a planned replacement (a pure number): find when to replace."
 _OUT = "Write B-lives and parameters with their bounds (.csv)."
 
 
@@ -56,6 +58,7 @@ class _Asked:
     fleet: Annotated[Path | None, option(_FLEET, metavar="CSV")] = None
     ahead: Annotated[str, option(_AHEAD)] = ""
     demonstrate: Annotated[str, option(_DEMONSTRATE)] = ""
+    cost_of_failure: Annotated[float | None, option(_COST)] = None
 
     def prepare(self) -> None:
         """Refuse half of a forecast."""
@@ -80,6 +83,14 @@ class _Asked:
         ahead = _age("--ahead", self.ahead, law.unit)
         ages, count = read_fleet(self.fleet, law.unit)
         return fleet_forecast(law, ages, ahead, count=count)
+
+    def replacement(self, law: FailureLaw) -> Replacement | None:
+        """Return when a planned replacement costs least."""
+        if self.cost_of_failure is None:
+            return None
+        from hersey.life.replacement import replacement_age
+
+        return replacement_age(law, self.cost_of_failure)
 
     def plan(
         self, law: FailureLaw | None, shape: float | None, level: float, seed: int
@@ -127,7 +138,8 @@ def weibull(
     table, drawing = may_write_table_and_figure(out, figure, force, inputs)
     if file is None and not (asked.demonstrate and shape is not None):
         raise ParameterError("name a table of FAILURES, or plan a test with --demonstrate AGE --shape SHAPE")
-    if file is None and (asked.age or asked.fleet or any(stress.given.values()) or out):
+    of_law = (asked.age, asked.fleet, asked.cost_of_failure, out, *stress.given.values())
+    if file is None and any(of_law):
         raise ParameterError("without a table of FAILURES only --demonstrate and --shape can be given")
 
     from hersey.life.failures.answers import FailureAnswers
@@ -138,6 +150,7 @@ def weibull(
             found,
             None if found is None else asked.remaining(found),
             None if found is None else asked.forecast(found),
+            None if found is None else asked.replacement(found),
             asked.plan(found, shape, level, seed),
         )
     if found is not None and out is not None:
@@ -151,7 +164,7 @@ def weibull(
         return
     if found is not None:
         printing.conclusion(lambda: _lines(found), found.summary(), *found.warnings)
-    for each in (answers.remaining, answers.forecast, answers.plan):
+    for each in (answers.remaining, answers.forecast, answers.replacement, answers.plan):
         if each is not None:
             printing.text("", each.summary())
     printing.files(out, figure)

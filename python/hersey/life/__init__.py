@@ -14,6 +14,7 @@ maintenance      what was done to a specimen, and the stretches of its life betw
 padded_rows      lists of runs or dwells as rows of equal length
 oil_layer        the layer of oil: how it thins, and how far it starves the film
 film             the film through life, the oil that is left, and when it starves
+replacement      the age at which a planned replacement costs least
 time_to_failure  what ends each specimen, and when
 other_uses       the same where limit, coldest start or duty is another one
 ageing_maps      the operating map of a specimen when new, now and at its end

@@ -13,6 +13,8 @@ _AGE = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s
 _WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
 #: A number whose point may stand between thousands, as in German.
 _THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{3}")
+#: Digits with separators between them.
+_SEPARATED, _SEPARATORS = re.compile(r"[-+]?[0-9]+([.,' ][0-9]+)+"), re.compile(r"[.,' ]")
 #: What ages usually count and is no time, which takes pint a second to find out.
 COUNTS = frozenset(["cycle", "lap", "page", "print", "revolution", "sheet", "start", "stop", "stroke"])
 _WAY_OUT = "Write a number and what it counts, e.g. '120000 pages', '310 h' or '2e6 cycles'"
@@ -54,9 +56,8 @@ class Age:
         if match is None:
             raise ParameterError(f"age '{text[:40]}' is not a number with a unit. {_WAY_OUT}")
         if re.match(r"[.,' ]?[0-9]", match[2]):
-            raise ParameterError(
-                f"age '{text[:40]}' has separators between its digits. Write the number without them"
-            )
+            ways = " or ".join(f"'{each}'" for each in _without_separators(text[:40]))
+            raise ParameterError(f"age '{text[:40]}' has separators between its digits. Write {ways}")
         if not (match[2] or unit):
             raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
         counted = match[2] or unit
@@ -112,6 +113,20 @@ def refuse_thousands(number: str, counted: str) -> None:
             f"age '{number} {counted}' can be read in two ways. Write "
             f"'{number.replace('.', '')} {counted}' or '{decimal} {counted}'"
         )
+
+
+def _without_separators(text: str) -> list[str]:
+    """What digits with separators may mean: a whole number, and one with the last of them as its point."""
+    digits = _SEPARATED.match(text.strip())
+    number = digits[0] if digits else ""
+    unit = text.strip()[len(number) :]
+    head, last, tail = re.split(r"([.,' ])(?=[0-9]*$)", number) if digits else (number, "", "")
+    head = _SEPARATORS.sub("", head)
+    ways = [f"{head}{tail}{unit}"]
+    if last in (".", ",") and number.count(last) == 1:
+        decimal = f"{float(f'{head}.{tail}'):.12g}"
+        ways.append(f"{decimal}{'0' * bool(_THOUSANDS.fullmatch(decimal))}{unit}")
+    return ways
 
 
 def one_of(unit: str) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
-from hersey.arrays import one_thread
+from hersey.arrays import one_thread, refuse_unknown
 from hersey.errors import HerseyError, ParameterError, Setting
 from hersey.life.ageing_maps import AgeingMaps, ageing_maps
 from hersey.life.drift.result import Drift, fit_drift
@@ -14,7 +14,8 @@ from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators, Runs
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.other_uses import OtherUses, uses_beside
-from hersey.life.time_to_failure.estimate import TimeToFailure, age_asked, time_to_failure
+from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
+from hersey.life.time_to_failure.questions import Asked, questions_of
 from hersey.result import Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -75,9 +76,9 @@ def follow(
     *,
     seed: int = 0,
     unit: str = "",
-    until: str | float | None = None,
     uses: bool = False,
     step: Step | None = None,
+    **asked: Unpack[Asked],
 ) -> LifeTest:
     """Predict which specimens of a campaign fail first, how, and when.
 
@@ -91,26 +92,28 @@ def follow(
         Random seed.
     unit
         Specimen whose maps are drawn. Default: the one that fails next.
-    until
-        Age that specimens should reach, e.g. "250000 pages": the next runs are those that show best which do.
     uses
         Whether to compute the ages also for other limits, coldest starts and duties.
     step
         Called with the name of each step as it begins.
+    **asked
+        Any of ``until``, ``share`` and ``cost_of_failure``; see `Asked`.
 
     Raises
     ------
     InsufficientDataError
         If no run shows any indicator.
     ParameterError, UnitError
-        If the campaign has no such specimen, or ``until`` is no age in the unit of its runs.
+        If the campaign has no such specimen, ``until`` is no age in the unit of its runs, ``share`` is not
+        between 0 and 1 or comes without ``until``, or ``cost_of_failure`` is not above 1 or beyond 100.
     """
+    refuse_unknown("follow", asked, tuple(Asked.__annotations__))
     if unit:
         try:
             campaign.runs(unit)
         except ParameterError as error:
             raise error.within(Setting("unit").to()) from None
-    age_asked(until, campaign.age_unit)
+    questions_of(campaign.age_unit, **asked)
     said = step or (lambda _text: None)
     warnings: list[Warning] = []
 
@@ -134,7 +137,7 @@ def follow(
         indicators = film.with_starvation(indicators)
     indicators = indicators.without_runs(diagnosis.excluded)
     said("growth and time to failure")
-    found = time_to_failure(indicators, until=until, seed=seed)
+    found = time_to_failure(indicators, seed=seed, **asked)
     drift = tried("drift", lambda: fit_drift(_dwells(campaign, diagnosis.excluded)))
     maps = tried(
         "maps when new, now and at the end",

@@ -77,6 +77,15 @@ def kind_of(text: str) -> str:
 OF_FRICTION, OF_DAMAGE = KINDS, (REPLACED,)
 
 
+@dataclass(frozen=True)
+class Stretch(Record):
+    """A stretch of the life of a specimen between maintenance, in which it ages from new."""
+
+    name: Annotated[str, Means("of the stretch; the last has the name of the specimen")]
+    unit: Annotated[str, Means("the specimen")]
+    begun: Annotated[float, Means("age of the specimen at which it began")]
+
+
 class Segments(NamedTuple):
     """Runs by segment: a stretch of life between maintenance, in which a specimen ages from new.
 
@@ -86,6 +95,14 @@ class Segments(NamedTuple):
     name: tuple[str, ...]  #: of the segment of each run
     age: FloatArray  #: of each run since its segment began
     begun: dict[str, float]  #: age at which the last segment of each specimen began
+
+    def stretches(self, unit: Sequence[str], age: FloatArray) -> tuple[Stretch, ...]:
+        """Return the segments of runs of specimens at ages; none where no maintenance began one."""
+        found = {
+            name: Stretch(name, of, at - since)
+            for name, of, at, since in zip(self.name, unit, age.tolist(), self.age.tolist(), strict=True)
+        }
+        return tuple(found.values()) if any(each.begun for each in found.values()) else ()
 
 
 def segments(

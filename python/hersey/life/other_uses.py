@@ -17,7 +17,7 @@ from hersey.life.growth.limit_ages import Earliest, Interval, of_population
 from hersey.life.indicators.load_cases import load_cases
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.run_dwells import read_runs_of
-from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens
+from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens, joint_order
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
 from hersey.result import Means, Record, Result
@@ -221,7 +221,8 @@ class _Ways:
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
         units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
-        first = np.sort(reduce(np.minimum, ages_of_new(ways, of_runs, random)), axis=1)
+        order = joint_order(ways, of_runs, random)
+        first = np.sort(reduce(np.minimum, ages_of_new(ways, order, random)), axis=1)
         least = Earliest.of_first([way.earliest for way in ways])
         b10, b50 = of_population(first, len(units), least, float(indicators.runs.age.max()))
         ends = tuple(UseEnd(each.unit, each.age.age, each.ways) for each in units)

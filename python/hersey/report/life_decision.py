@@ -31,7 +31,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
     return {
         "signal": SIGNALS[worst],
         "lead": found.lead(),
-        "more": [found.of_new()] if found.of_new() else [],
+        "more": [*filter(None, [found.of_new()]), *found.answers()],
         "next": [sentence(each) for each in (*found.advice, found.planning()) if each],
         "heads": ["Specimen", "State", "Failure mode", f"Expected{of_unit}", f"90 % interval{of_unit}"],
         "rows": [_row(specimens[name]) for name in ordered[:_SHOWN]],
@@ -39,6 +39,7 @@ def decision(found: TimeToFailure) -> dict[str, Any]:
         "age_unit": found.age_unit,
         "end": _end([specimens[name] for name in ordered[:_SHOWN]], last),
         "b10": None if found.b10 is None else found.b10.age.to_dict(),
+        "failing": None if found.followed_failing is None else found.followed_failing.to_dict(),
     }
 
 
@@ -61,11 +62,9 @@ def _expected(each: SpecimenEnd) -> str:
     age = each.age.age
     if each.state == "unclear":
         return f"before {rounded(age.high)}" if math.isfinite(age.high) else "unknown"
-    far = FAR * each.age.last if each.age.last > 0.0 else math.inf
-    if math.isinf(age.value) and math.isfinite(age.low):
+    beyond = math.isinf(age.value) or age.value > FAR * each.age.last > 0.0
+    if beyond and math.isfinite(age.low):
         return f"after {rounded(age.low)}"
-    if age.value > far:
-        return f"after {rounded(min(age.low, far))}"
     return rounded(age.value) if math.isfinite(age.value) else "unknown"
 
 

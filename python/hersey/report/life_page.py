@@ -119,7 +119,7 @@ def _sections(answer: LifeTest, drawn_charts: list[str]) -> list[dict[str, Any]]
         parts.append(
             _section("drift", title, named("drift"), lines=drift.findings(), warnings=drift.warnings)
         )
-    return [*parts, _section("population", "Population", named("population"))]
+    return [*parts, _section("population", "Population", [*named("population"), *named("replacement")])]
 
 
 def _each(found: TimeToFailure) -> dict[str, Any]:

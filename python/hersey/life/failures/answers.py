@@ -1,4 +1,4 @@
-"""What is asked of failures at once: the law, one specimen, a fleet, and the next test."""
+"""What is asked of failures at once: the law, one specimen, a fleet, when to replace, and the next test."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from hersey.life.failures.forecast import FleetForecast, RemainingLife
 from hersey.life.failures.law import FailureLaw
 from hersey.life.failures.test_plan import LifeTestPlan
+from hersey.life.replacement import Replacement
 from hersey.result import Record
 
 
@@ -17,4 +18,5 @@ class FailureAnswers(Record):
     law: FailureLaw | None
     remaining: RemainingLife | None
     forecast: FleetForecast | None
+    replacement: Replacement | None
     plan: LifeTestPlan | None

@@ -183,7 +183,7 @@ def _fits(
         return (), (no_law(sample),)
     whole = fitted(law, sample, covariate, known=shape, seed=seed, calibrated=calibrate)
     if shape is None and not (whole.is_estimable and _spreads(sample)):
-        return (), (no_law(sample),)
+        return (), (no_law(sample, flat=whole.is_flat),)
     few = few_failures(sample) if shape is None else ()
     modes = sample.modes
     if len(modes) < _LEAST:

@@ -27,8 +27,8 @@ from hersey.life.failures.sample import Failures
 _FEW, _DRAWS = 40, 2000
 #: Shares of which quantiles are drawn, for a band.
 _NODES = 5
-#: Logarithm of a shape that counts as none: all failures at one age.
-_STEEPEST = 8.0
+#: Logarithms of shapes that count as none: all failures at one age, or at none more than at another.
+_STEEPEST, _FLATTEST = 8.0, -3.0
 #: How far from the estimate a bound is sought first and at the most, in ln age or ln shape.
 _FIRST, _FARTHEST = 0.1, 40.0
 #: Logit of a share beyond which no bound is sought.
@@ -74,8 +74,13 @@ class Fit:
 
     @property
     def is_estimable(self) -> bool:
-        """Whether there is a law: not if all failures lie at one age."""
-        return bool(abs(np.log(self.k)) < _STEEPEST and np.isfinite(self.m))
+        """Whether there is a law: not if all failures lie at one age, or the share failed does not grow."""
+        return bool(not self.is_flat and np.log(self.k) < _STEEPEST and np.isfinite(self.m))
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether the share failed does not grow with age."""
+        return bool(np.log(self.k) < _FLATTEST)
 
     @property
     def parameters(self) -> int:
@@ -273,7 +278,7 @@ def _guess(sample: Failures, law: Distribution) -> tuple[float, float]:
     """M and k to begin with."""
     failed = sample.failed
     low, high = np.maximum(sample.low[failed], 1e-300), sample.high[failed]
-    ages = np.log(np.where(sample.low[failed] > 0, np.sqrt(low * high), 0.5 * high))
+    ages = np.log(np.where(sample.low[failed] > 0, np.sqrt(low) * np.sqrt(high), 0.5 * high))
     weights = sample.count[failed]
     mean = float(np.average(ages, weights=weights))
     spread = float(np.sqrt(np.average((ages - mean) ** 2, weights=weights)))

@@ -54,7 +54,6 @@ def _turnbull(sample: Failures) -> tuple[FloatArray, FloatArray]:
     inside &= ~(point & (lows <= sample.low[:, None])) | (
         sample.exact[:, None] & (highs == sample.high[:, None])
     )
-    inside &= ~sample.exact[:, None] | point
     mass = np.full(lows.size, 1.0 / lows.size)
     weights = sample.count / sample.specimens
     for _ in range(_ROUNDS):

@@ -21,7 +21,9 @@ _RUNNING = frozenset(
     ["running", "suspended", "suspension", "s", "censored", "survived", "alive", "right", "ok", "good", "c"]
 )
 _LEFT = frozenset(["left", "before", "found failed"])
-_YES, _NO = frozenset(["1", "yes", "true", "y"]), frozenset(["0", "no", "false", "n"])
+_YES, _NO = frozenset(["1", "1.0", "yes", "true", "y"]), frozenset(["0", "0.0", "no", "false", "n"])
+#: An end that a specimen has not reached, as other programs write it.
+_ENDLESS = frozenset(["inf", "infinity", "\u221e"])
 _AMOUNT = re.compile(r"\s*([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)\s*(\S.*?)\s*")
 #: The stress of use.
 _USE = Setting("use")
@@ -37,7 +39,7 @@ def read_failures(path: str | Path, *, arrhenius: str = "", power: str = "", use
     and ``high`` (the last age at which it was good, the first at which it had failed; no ``high`` if it
     still runs). ``failed`` or ``censored`` with yes or no may stand for ``status``. The unit stands in each
     cell (``120000 pages``) or in the heading (``age [pages]``). Also read are ``count`` (specimens of a
-    row) and ``mode``.
+    row) and ``mode``. Columns named as in sheets of Minitab, Weibull++ and R do too.
 
     Parameters
     ----------
@@ -89,21 +91,24 @@ def _refuse_unclear(table: Table, stress: str) -> None:
     at = table.at
     columns = table.columns
     remedy = f"line 1 must name age and status, e.g. '{_EXAMPLE}', or low and high, e.g. 'low [h],high [h]'"
+    if len(table.listed) == 1 and len(table.listed[0].split()) > 1:
+        remedy = f"separate columns by commas, e.g. '{','.join(table.listed[0].split())}'"
     if "age" in at and ("low" in at or "high" in at):
         raise ChannelError(f"{table.name}: columns of 'age' and of 'low' or 'high'. {columns}", remedy=remedy)
     if "age" not in at and not {"low", "high"} <= at.keys():
         missing = "age" if "low" not in at and "high" not in at else "low" if "low" not in at else "high"
         raise ChannelError(f"{table.name}: there is no column '{missing}'. {columns}", remedy=remedy)
-    told = [role for role in ("status", "failed", "censored") if role in at]
+    told = table.states
     if "age" in at and not told and "mode" not in at:
         raise ChannelError(
             f"{table.name}: no column says which specimens failed. {columns}",
             remedy=f"add a column 'status' and {_ROWS}",
         )
-    if len(told) > 1 or ("low" in at and told):
+    if len(told) > 1:
+        again = table.names[told[-1]]
         raise ChannelError(
-            f"{table.name}: column '{told[-1]}' says again which specimens failed. {columns}",
-            remedy=f"delete column '{told[-1]}'",
+            f"{table.name}: column '{again}' says again which specimens failed. {columns}",
+            remedy=f"delete column '{again}'",
         )
     _refuse_others(table, columns, stress)
     if not table.rows:
@@ -136,35 +141,37 @@ def _at_ages(table: Table, line: int, row: Sequence[str], unit: str) -> tuple[fl
 
 def _status(table: Table, line: int, row: Sequence[str]) -> str:
     """Whether specimens of a row failed at its age, run, or were found failed."""
-    if "status" in table.at:
-        cell = table.cell(row, "status").casefold()
+    if not table.states:
+        return "failed" if _named_mode(table, row) else "running"
+    role = table.states[0]
+    typed = table.cell(row, role)
+    cell = typed.casefold()
+    if role != "failed":  # where F may be false
         for name, words in (("failed", _FAILED), ("running", _RUNNING), ("left", _LEFT)):
             if cell in words:
                 return name
-        shown = f"'{cell[:40]}'" if cell else "empty"
+    if role != "status" or table.names[role].casefold() == "event":
+        for words, failed in ((_YES, True), (_NO, False)):
+            if cell in words:
+                return "failed" if failed != (role == "censored") else "running"
+    shown = f"'{typed[:40]}'" if typed else "empty"
+    where = f"{table.place(line, role)} is {shown}"
+    if role != "status":
+        raise UnreadableLogError(f"{where}: write yes or no")
+    if cell in ("0", "1", "0.0", "1.0"):
         raise UnreadableLogError(
-            f"{table.place(line, 'status')} is {shown}: {_ROWS} (or left, if it was found failed at that age)"
+            f"{where}: {_ROWS}, or name the column 'failed' if 1 means failed, 'censored' if 1 means running"
         )
-    for role, yes in (("failed", "failed"), ("censored", "running")):
-        if role in table.at:
-            cell = table.cell(row, role).casefold()
-            if cell in _YES | _NO:
-                return yes if cell in _YES else {"failed": "running", "running": "failed"}[yes]
-            raise UnreadableLogError(
-                f"{table.place(line, role)} is '{cell[:40]}': write yes or no"
-                if cell
-                else f"{table.place(line, role)} is empty: write yes or no"
-            )
-    return "failed" if _named_mode(table, row) else "running"
+    raise UnreadableLogError(f"{where}: {_ROWS} (or left, if it was found failed at that age)")
 
 
 def _between(table: Table, line: int, row: Sequence[str], unit: str) -> tuple[float, float, str]:
     """The ends of a row with the last age at which it was good and the first at which it had failed."""
     low, high = table.cell(row, "low"), table.cell(row, "high")
+    high = "" if high.casefold() in _ENDLESS else high
     if not (low or high):
-        raise UnreadableLogError(
-            f"{table.name}, line {line}: columns 'low' and 'high' are empty. Fill one in"
-        )
+        both = f"'{table.names['low']}' and '{table.names['high']}'"
+        raise UnreadableLogError(f"{table.name}, line {line}: columns {both} are empty. Fill one in")
     first = last = None
     if low:
         first = age_of(table, line, row, "low", unit)
@@ -174,12 +181,16 @@ def _between(table: Table, line: int, row: Sequence[str], unit: str) -> tuple[fl
         above_zero(table, line, "high", last)
         unit = last.unit
     begin = first.value if first else 0.0
-    if last is None:
-        assert first is not None
-        return above_zero(table, line, "low", first), math.inf, unit
-    if last.value < begin:
+    if first and last and last.value < begin:
         raise ParameterError(f"{table.place(line, 'high')}: {last} is less than low, {first}. Swap them")
-    return begin, last.value, unit
+    status = _status(table, line, row) if table.states else "running" if last is None else "failed"
+    if status == "running":
+        seen = last or first
+        assert seen is not None
+        return above_zero(table, line, "high" if last else "low", seen), math.inf, unit
+    if last is None:
+        raise UnreadableLogError(f"{table.place(line, 'high')} is empty, but it failed. Fill it in")
+    return 0.0 if status == "left" else begin, last.value, unit
 
 
 def _named_mode(table: Table, row: Sequence[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -168,13 +169,12 @@ def life_test_plan(
         for allowed in _ALLOWED
     )
     level = 2 * confidence - 1 if confidence > 0.5 else 0.5
-    known = tuple(
-        Precision(
-            size, *(_expected(size, fails, shape, share, level, seed) for fails in (size, (size + 1) // 2))
-        )
-        for size in _SIZES
-    )
-    return LifeTestPlan(share, target, unit, shape, confidence, tests, known)
+    known = []
+    for size in _SIZES:
+        ratios = (_log_ratio(size, fails, share, level, seed) for fails in (size, (size + 1) // 2))
+        with np.errstate(over="ignore"):
+            known.append(Precision(size, *(float(np.exp(each / shape)) for each in ratios)))
+    return LifeTestPlan(share, target, unit, shape, confidence, tests, tuple(known))
 
 
 def specimens_for(length: float, allowed: int, shape: float, share: float, confidence: float) -> int:
@@ -189,15 +189,18 @@ def specimens_for(length: float, allowed: int, shape: float, share: float, confi
     return high
 
 
-def _expected(size: int, fails: int, shape: float, share: float, level: float, seed: int) -> float:
-    """Upper over lower bound of a sample whose ages lie where they are expected."""
+@cache
+def _log_ratio(size: int, fails: int, share: float, level: float, seed: int) -> float:
+    """Logarithm of upper over lower bound of a sample of shape 1 whose ages lie where they are expected.
+
+    Of another shape it is that over the shape: ln age has the same law, stretched.
+    """
     ranks = (np.arange(1, fails + 1) - 0.5) / size
-    ages = np.exp(WEIBULL.quantile(ranks, np.array(shape)))
+    ages = np.exp(WEIBULL.quantile(ranks, np.array(1.0)))
     low, high, count = ages, ages, np.ones(fails, dtype=int)
     if fails < size:
         low, high = np.append(low, ages[-1]), np.append(high, np.inf)
         count = np.append(count, size - fails)
     fit = fitted(WEIBULL, Failures(low, high, count), seed=seed)
     first, last = fit.bounds(np.array([share]), level, age_held)
-    with np.errstate(over="ignore"):
-        return float(np.exp(last[0] - first[0]))
+    return float(last[0] - first[0])

@@ -18,8 +18,8 @@ _FEW, _BETTER = 4, 4.0
 _DOUBTED = 0.05
 
 
-def no_law(sample: Failures) -> Warning:
-    """Return why the failures determine no law."""
+def no_law(sample: Failures, *, flat: bool = False) -> Warning:
+    """Return why the failures determine no law; ``flat``: the share failed does not grow with age."""
     count = sample.failures
     ends = sample.high[sample.failed]
     age = float(ends.min() if count else np.max(sample.low))
@@ -29,6 +29,8 @@ def no_law(sample: Failures) -> Warning:
         if count == 0
         else "only one specimen has failed, by {shown}, so the failure law is unknown"
         if count == 1
+        else "the share failed hardly grows with age, so the failure law is unknown"
+        if flat
         else "all failures lie at one age or in one interval, by {shown}, so their spread is unknown",
         remedy="follow specimens until more have failed, or state the shape if it is known",
         severity="act",

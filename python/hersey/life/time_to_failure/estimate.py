@@ -14,13 +14,10 @@ from hersey.arrays import FloatArray, one_thread
 from hersey.errors import (
     HerseyError,
     InsufficientDataError,
-    ParameterError,
     Setting,
-    UnitError,
     capital,
     sentence,
 )
-from hersey.life.age import Age
 from hersey.life.growth.limit_ages import (
     FAR,
     POPULATION,
@@ -32,11 +29,16 @@ from hersey.life.growth.limit_ages import (
     rounded,
 )
 from hersey.life.indicator import NOT_JUDGED, Indicators
+from hersey.life.replacement import Replacement
 from hersey.life.time_to_failure.ageing import Ageing, ageing_of
 from hersey.life.time_to_failure.attention import Attention, attention_of, half_failed
-from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens
+from hersey.life.time_to_failure.decided import Decided, decided
+from hersey.life.time_to_failure.deciding_run import DecidingRun
+from hersey.life.time_to_failure.failing_before import FollowedFailing, ShareFailing, failing_of_followed
+from hersey.life.time_to_failure.first import SpecimenEnd, ages_of_new, ends_of_specimens, joint_order
 from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import NextRun, next_runs
+from hersey.life.time_to_failure.questions import questions_of
 from hersey.life.time_to_failure.unsure import unsure
 from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
 from hersey.result import Means, Record, Result
@@ -93,12 +95,27 @@ class TimeToFailure(Result):
     until: Annotated[
         float | None, Means("age that specimens should reach, as asked; null if none was stated")
     ]
+    followed_failing: Annotated[
+        FollowedFailing | None, Means("how many of the specimens fail before that age; null without it")
+    ]
+    share_failing: Annotated[
+        ShareFailing | None,
+        Means("whether at most a share of new specimens fails before that age; null if not asked or unknown"),
+    ]
+    replacement: Annotated[
+        Replacement | None,
+        Means("when a planned replacement costs least; null if not asked, or for fewer than four specimens"),
+    ]
     next_runs: Annotated[
         tuple[NextRun, ...],
         Means(
             "runs that help to decide whether specimens reach that age or, if none was stated, have failed; "
             "the most helpful first"
         ),
+    ]
+    deciding_runs: Annotated[
+        tuple[DecidingRun, ...],
+        Means("the run that helps most to decide the share, and when to replace, where these are open"),
     ]
     warnings: Annotated[
         tuple[Warning, ...],
@@ -121,7 +138,7 @@ class TimeToFailure(Result):
         of_unit = f" ({self.age_unit})" if self.age_unit else ""
         lines = [
             self.headline(),
-            *filter(None, [self.of_new()]),
+            *filter(None, [self.of_new(), *self.answers(), self.of_followed()]),
             f"age of first failure{of_unit}, with 90 % intervals",
         ]
         lines += [f"  {each}" for each in self.units[:_SHOWN]]
@@ -176,22 +193,42 @@ class TimeToFailure(Result):
             return ""
         return half_failed(self.b50.age, self.shares, self.age_unit)
 
+    def answers(self) -> list[str]:
+        """Return the answers to what was asked of new specimens, as sentences."""
+        share = [] if self.share_failing is None else [self.share_failing.words(self.age_unit)]
+        return share if self.replacement is None else [*share, self.replacement.summary()]
+
+    def of_followed(self) -> str:
+        """Return how many of the specimens fail before the age asked; empty without one."""
+        return "" if self.followed_failing is None else self.followed_failing.sentence(self.age_unit)
+
     @property
     def advice(self) -> tuple[str, ...]:
         """What to do next, in words: specimens to inspect, how long to go on without growth, runs.
 
         The runs come first if they answer a stated question.
         """
+        deciding = self._deciding()
         likely = {each.unit: " or ".join(each.likely) for each in self.units}
         failed = [f"inspect {name} for {likely[name]}" for name in self.attention.failed]
         go_on = [self.ageing.advice(self.age_unit)]
         runs = [each.words(self.age_unit) for each in self.next_runs]
         asked, open_ = runs[:_ADVISED], (*failed[:_ADVISED], *filter(None, go_on))
-        return (*open_, *asked) if self.until is None else (*asked, *open_)
+        of_specimens = self.until is not None and self.share_failing is None
+        return (*deciding, *asked, *open_) if of_specimens else (*deciding, *open_, *asked)
+
+    def _deciding(self) -> list[str]:
+        """What would decide the questions about new specimens."""
+        share, asked = self.share_failing, {"replacement": "when to replace"}
+        if share is not None:
+            asked["share"] = share.question(self.age_unit)
+        later = [] if share is None else [share.advice(self.age_unit)]
+        runs = [each.words(self.age_unit, asked[each.question]) for each in self.deciding_runs]
+        return [*filter(None, later), *runs]
 
     def planning(self) -> str:
-        """Return how to state the age that specimens should reach; empty if it was stated."""
-        if self.until is not None:
+        """Return how to state the age that specimens should reach; empty if a question was stated."""
+        if self.until is not None or self.replacement is not None:
             return ""
         far = 1.5 * max(each.age.last for each in self.units)
         setting = Setting("until").to(f"{rounded(far, 2)} {self.age_unit}".strip())
@@ -230,6 +267,8 @@ def time_to_failure(
     indicators: Indicators,
     *,
     until: str | float | None = None,
+    share: float | None = None,
+    cost_of_failure: float | None = None,
     seed: int = 0,
     progress: Callable[[int, int], None] | None = None,
 ) -> TimeToFailure:
@@ -247,6 +286,11 @@ def time_to_failure(
     until
         Age that specimens should reach, e.g. "250000 pages". `next_runs` are those that show best which do;
         without it, which have failed. Where nothing grows `ageing` says how long to go on.
+    share
+        Share of new specimens that may fail before that age, e.g. 0.05.
+    cost_of_failure
+        Cost of a failure in service over that of a planned replacement, e.g. 10: `replacement` is the age
+        at which a planned replacement costs least.
     seed
         Of the draws: the same data and seed give the same result.
     progress
@@ -255,11 +299,12 @@ def time_to_failure(
     Raises
     ------
     ParameterError, UnitError
-        If ``until`` is no age in the unit of the runs.
+        If ``until`` is no age in the unit of the runs, ``share`` is not between 0 and 1 or comes without
+        ``until``, or ``cost_of_failure`` is not above 1 or beyond 100.
     InsufficientDataError
         If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
-    asked = age_asked(until, indicators.runs.age_unit)
+    asked = questions_of(indicators.runs.age_unit, until, share, cost_of_failure)
     fitted, warnings = [], list(indicators.warnings)
     for i, each in enumerate(indicators.each):
         try:
@@ -278,47 +323,34 @@ def time_to_failure(
     of_runs = correlations([each.residuals for each in ending])
     names, last = indicators.runs.units, last_ages(indicators)
     units, picks = ends_of_specimens(ending, of_runs, names, last, random)
-    new = np.stack(list(ages_of_new(ending, of_runs, random)))
+    order = joint_order(ending, of_runs, random)
+    new = np.stack(list(ages_of_new(ending, order, random)))
     greatest = float(indicators.runs.age.max())
     first = np.sort(new.min(axis=0), axis=1)
     least = Earliest.of_first([each.earliest for each in ending])
     b10, b50 = of_population(first, len(units), least, greatest)
     known = len(units) >= POPULATION
-    runs = next_runs(ending, units, picks, of_runs, asked, random)
+    runs = next_runs(ending, units, picks, of_runs, asked.until, random)
+    of_new = decided(asked, first, greatest, ending, units, order, of_runs, seed) if known else Decided()
     modes = tuple(each.mode for each in fitted)
     return TimeToFailure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,
-        ageing=ageing_of(ending, greatest, asked),
+        ageing=ageing_of(ending, greatest, asked.until),
         b10=b10,
         b50=b50,
         shares=_shares(ending, new) if known else None,
         curve=_curve(first, greatest) if known else None,
-        until=asked,
+        until=asked.until,
+        followed_failing=failing_of_followed(ending, order, asked.until, greatest),
+        share_failing=of_new.share,
+        replacement=of_new.replacement,
         next_runs=tuple(runs),
-        warnings=(*warnings, *unsure(ending, units), *_of_modes(ending, units)),
+        deciding_runs=of_new.runs,
+        warnings=(*warnings, *unsure(ending, units, asked), *_of_modes(ending, units)),
         seed=seed,
     )
-
-
-def age_asked(until: str | float | None, unit: str) -> float | None:
-    """Return the age that specimens should reach, in the unit of the runs.
-
-    Raises
-    ------
-    ParameterError, UnitError
-        If it is no age greater than 0 in such a unit.
-    """
-    if until is None:
-        return None
-    try:
-        age = Age.parse(until, unit).as_unit(unit) if isinstance(until, str) else Age(float(until), unit)
-        if age.value == 0.0:
-            raise ParameterError("the age that specimens should reach must be greater than 0")
-    except (ParameterError, UnitError) as error:
-        raise error.within(Setting("until").to()) from None
-    return age.value
 
 
 def _by_reason(warnings: Sequence[Warning]) -> list[str]:

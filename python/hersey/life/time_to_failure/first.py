@@ -124,14 +124,21 @@ def _firsts(ages: FloatArray) -> FloatArray:
     return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
 
 
+def joint_order(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> IntArray:
+    """Return which draws of the population of each mode stand together, (draws, modes)."""
+    middle = np.stack([each.middle for each in ending], axis=1)
+    return order_by(middle, ranks_of(len(middle), of_runs, random))
+
+
 def ages_of_new(
-    ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator
+    ending: Sequence[FittedWay], order: IntArray, random: np.random.Generator
 ) -> Iterator[FloatArray]:
-    """Yield ages of new specimens at each limit, (draws, specimens), specimens side by side."""
+    """Yield ages of new specimens at each limit, (draws, specimens), specimens side by side.
+
+    ``order`` is as from `joint_order`.
+    """
     logs = [np.log(np.clip([a.age.value for a in each.mode.ages.units], 1e-9, 1e300)) for each in ending]
     of_specimens = correlations(logs)
-    middle = np.stack([each.middle for each in ending], axis=1)
-    order = order_by(middle, ranks_of(len(middle), of_runs, random))
     ranks = ranks_of(ending[0].new.shape[1], of_specimens, random)
     for m, each in enumerate(ending):
         yield each.new[np.ix_(order[:, m], ranks[:, m])]

@@ -25,7 +25,7 @@ _RUNS = 128
 _WAY, _BEYOND = (0.25, 0.5, 0.75, 1.0), (0.05, 0.1, 0.2)
 #: A run is worth it if it lowers the risk of a wrong answer by this share; of those that come near the best
 #: one the earliest is chosen.
-_WORTH, _NEAR = 0.15, 0.8
+WORTH, NEAR = 0.15, 0.8
 #: Specimens, of the most doubtful, for which a run is weighed, and risk up to which a question needs none.
 _WEIGHED, _SURE = 24, 0.05
 
@@ -108,9 +108,9 @@ def wrong_after(
 def _chosen(before: float, after: FloatArray) -> int | None:
     """Which candidate is worth a run: the earliest that comes near the best; None if none is."""
     gain = before - after
-    if gain.max() < _WORTH * before:
+    if gain.max() < WORTH * before:
         return None
-    return int(np.flatnonzero(gain >= _NEAR * gain.max())[0])
+    return int(np.flatnonzero(gain >= NEAR * gain.max())[0])
 
 
 def next_runs(

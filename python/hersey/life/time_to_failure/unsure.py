@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from hersey.life.growth.limit_ages import FAR, POPULATION
 from hersey.life.time_to_failure.first import SpecimenEnd
+from hersey.life.time_to_failure.questions import Questions
 from hersey.life.time_to_failure.way import FittedWay, listed
 from hersey.schema.warning import Warning
 
@@ -14,8 +15,10 @@ from hersey.schema.warning import Warning
 _WIDE = 2.0
 
 
-def unsure(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
+def unsure(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd], asked: Questions) -> Iterator[Warning]:
     """Yield what is not known of all ends."""
+    if len(units) < POPULATION:
+        yield from _not_answered(len(units), asked)
     named = {name for each in units if math.isfinite(each.age.age.value) for name in each.named}
     unnamed = [e.mode.name for e in ending if e.mode.growth.law is None and e.mode.name in named]
     if unnamed:
@@ -28,6 +31,27 @@ def unsure(ending: Sequence[FittedWay], units: Sequence[SpecimenEnd]) -> Iterato
     if len(units) < POPULATION:
         yield _few_specimens(len(units))
     yield from _of_specimens(units)
+
+
+def _not_answered(count: int, asked: Questions) -> Iterator[Warning]:
+    if asked.share is not None:
+        yield Warning(
+            "share unknown",
+            "whether at most {share:.3g %} of new specimens fail before that age cannot be determined from "
+            "{specimens} {specimens:specimen|specimens}",
+            remedy="follow four specimens or more",
+            severity="act",
+            share=asked.share,
+            specimens=count,
+        )
+    if asked.cost_of_failure is not None:
+        yield Warning(
+            "replacement age unknown",
+            "when to replace specimens cannot be determined from {specimens} {specimens:specimen|specimens}",
+            remedy="follow four specimens or more",
+            severity="act",
+            specimens=count,
+        )
 
 
 def _few_specimens(count: int) -> Warning:

@@ -13,7 +13,7 @@ from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, Earliest, ages_at_limit
 from hersey.life.indicator import Indicator, Indicators, OwnAges
-from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION
+from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Stretch
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
 
@@ -39,6 +39,9 @@ class Mode(Record):
     growth: Growth
     ages: AgesAtLimit
     warnings: tuple[Warning, ...]
+    stretches: Annotated[
+        tuple[Stretch, ...], Means("what the units of the growth are; empty if they are the specimens")
+    ] = ()
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         growth,
         at_limit,
         tuple(warnings),
+        of_runs.stretches(runs.unit, runs.age),
     )
     error = float(np.median(each.error[known_runs]))
     least = Earliest.unknown(len(last)) if grows else earliest

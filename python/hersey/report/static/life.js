@@ -66,12 +66,21 @@ function specimens(parent, { heads, rows, first, end, age_unit: unit }) {
   link(note, "All failure modes of each specimen", "ends");
   if (cells.length > first) table(fold(element, `${cells.length - first} more`), heads, cells.slice(first), [3], { name: "ages-more", label: "More specimens" });
 }
-function population(parent, tenth, unit) {
-  add(parent, "h2", "Population");
+// B10 of new specimens; and how many of those followed fail before the age that is stated.
+function population(parent, { b10: tenth, failing, age_unit: unit }) {
+  add(parent, "h2", tenth ? "Population" : "Specimens");
   const rows = add(parent, "dl", "", "population");
-  add(rows, "dt", `10 % have failed by (B10), ${unit}`);
-  const cell = add(rows, "dd", tenth.value === null ? "" : `${aged(tenth.value)} `);
-  add(cell, "span", tenth.value === null && tenth.low !== null ? `later than ${aged(tenth.low)}` : `(${interval(tenth)})`, "u");
+  if (tenth) {
+    add(rows, "dt", `10 % have failed by (B10), ${unit}`);
+    const cell = add(rows, "dd", tenth.value === null ? "" : `${aged(tenth.value)} `);
+    add(cell, "span", tenth.value === null && tenth.low !== null ? `later than ${aged(tenth.low)}` : `(${interval(tenth)})`, "u");
+  }
+  if (failing) {
+    const { value, low, high } = failing.failed;
+    add(rows, "dt", `Of the ${failing.specimens} followed, failures before ${aged(failing.age, 6)} ${unit}`);
+    const cell = add(rows, "dd", low === high ? `${value}` : `${value} `);
+    if (low !== high) add(cell, "span", `(${low} to ${high})`, "u");
+  }
 }
 async function main() {
   document.title = `hersey: ${data.title}`;
@@ -90,13 +99,13 @@ async function main() {
     if (warnings.length > shown.length) list(fold(box, `${warnings.length - shown.length} more ${warnings.length - shown.length === 1 ? "warning" : "warnings"}`), warnings.slice(shown.length));
   }
   const [ends, ...others] = data.sections;
-  const tenth = data.decision.b10, beside = data.uses || tenth;
+  const counts = data.decision.b10 || data.decision.failing, beside = data.uses || counts;
   const first = add(report, "div", "", beside ? "first life-first" : "");
   const left = add(first, "div");
   if (beside) {
     const panel = add(first, "div", "", "panel");
     if (data.uses) otherUses(add(panel, "div", "", "uses"), data.uses);
-    if (tenth) population(panel, tenth, data.decision.age_unit);
+    if (counts) population(panel, data.decision);
   }
   specimens(left, data.decision);
   await section(left, ends);
