@@ -7,6 +7,7 @@ Usage:
     python -m benchmarks.life_tests count NAME                 the tables of rows
     python -m benchmarks.life_tests page NAME [SLIPS]          write them to benchmarks/LIFE_TESTS.md
     python -m benchmarks.life_tests slips NAME FIRST COUNT     with one mistake each, and as many without
+    python -m benchmarks.life_tests suspects NAME FIRST COUNT  the same by the diagnostics alone: no files
 
 Seeds 0 to 19 are for developing, 1000 to 1199 for the count, from 2000 on for mistakes. Nobody looks at a
 campaign of the latter two.
@@ -17,8 +18,9 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
-from benchmarks.life_tests import campaign, product, score, slips, tables
+from benchmarks.life_tests import campaign, product, score, slips, suspects, tables
 from benchmarks.life_tests.page import page
 
 PAGE = Path("benchmarks/LIFE_TESTS.md")
@@ -48,19 +50,25 @@ def run(name: str, seeds: range) -> None:
         print(seed, found.get("seconds", found.get("error")), flush=True)
 
 
-def run_slips(name: str, first: int, count: int) -> None:
-    """Ask hersey for as many campaigns with a mistake as clean ones."""
+def run_slips(name: str, first: int, count: int, *, files: bool = True) -> None:
+    """Ask hersey, or the diagnostics alone, for as many campaigns with a mistake as clean ones."""
     file = BUILD / f"{name}.jsonl"
     file.parent.mkdir(parents=True, exist_ok=True)
     there = {json.loads(line)["seed"] for line in file.read_text().splitlines()} if file.exists() else set()
     for number, seed in enumerate(slips.seeds(first, 2 * count)):
         if seed in there:
             continue
-        folder = BUILD / "slips" / f"s{seed}"
-        if not (folder / "slip.json").exists():
-            slips.write(seed, folder, slip=number < count, number=number)
         with file.open("a") as out:
-            out.write(json.dumps(slips.row(folder)) + "\n")
+            out.write(json.dumps(_of_slip(seed, number, number < count, files)) + "\n")
+
+
+def _of_slip(seed: int, number: int, slip: bool, files: bool) -> dict[str, Any]:
+    if not files:
+        return suspects.row(seed, slip=slip, number=number)
+    folder = BUILD / "slips" / f"s{seed}"
+    if not (folder / "slip.json").exists():
+        slips.write(seed, folder, slip=slip, number=number)
+    return slips.row(folder)
 
 
 def main(arguments: list[str]) -> None:
@@ -71,8 +79,8 @@ def main(arguments: list[str]) -> None:
         write(Path(name), range(numbers[0], numbers[1] + 1))
     elif what == "run":
         run(name, range(numbers[0], numbers[1] + 1))
-    elif what == "slips":
-        run_slips(name, *numbers)
+    elif what in ("slips", "suspects"):
+        run_slips(name, *numbers, files=what == "slips")
     elif what == "count":
         rows = score.read(BUILD / f"{name}.jsonl")
         print(slips.report(rows) if "slip" in rows[0] else score.report(rows))

@@ -166,14 +166,20 @@ def seeds(first: int, count: int) -> list[int]:
     return [seed for seed in range(first, first + 2 * count) if seed % 10 != 8][:count]
 
 
-def write(seed: int, folder: Path, *, slip: bool, number: int) -> None:
-    """Write the campaign of a seed with or without the mistake of a number."""
+def made_of(seed: int, *, slip: bool, number: int) -> tuple[Campaign, Runs, Slip | None]:
+    """Return the campaign of a seed, its runs with or without the mistake of a number, and the mistake."""
     one = drawn.draw(seed)
     rng = np.random.default_rng([36, seed])
-    runs, made = tables.tables(one), None
-    if slip:
-        makers = MAKERS if one.mechanism.leads else LASTING
-        runs, made = makers[number % len(makers)](one, runs, rng)
+    runs = tables.tables(one)
+    if not slip:
+        return one, runs, None
+    makers = MAKERS if one.mechanism.leads else LASTING
+    return one, *makers[number % len(makers)](one, runs, rng)
+
+
+def write(seed: int, folder: Path, *, slip: bool, number: int) -> None:
+    """Write the campaign of a seed with or without the mistake of a number."""
+    one, runs, made = made_of(seed, slip=slip, number=number)
     tables.write_runs(runs, folder)
     for log in folder.glob("U*.csv"):  # as after copying: their times say nothing
         os.utime(log, (1.7e9, 1.7e9))

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -22,7 +23,7 @@ import pytest
 import hersey
 from hersey.errors import HerseyError, MissingFileError, OutputError, ParameterError, UnitError
 from hersey.life.age import Age
-from hersey.life.campaign import Campaign, Entry
+from hersey.life.campaign import Campaign, Entry, dwells
 from hersey.life.campaign import store as storing
 from hersey.life.campaign.conversion import entry_of, points_of
 from hersey.log.impossible import Impossible
@@ -447,6 +448,47 @@ def test_a_thousand_runs_are_listed(campaign: Campaign) -> None:
     assert campaign.runs().height == 1000
     assert len(campaign.summary().splitlines()) == 21
     assert json.loads(json.dumps(campaign.to_dict()))["runs"][0]["unit"] == "F0"
+
+
+def test_added_runs_are_compared_with_a_part_of_many(campaign: Campaign) -> None:
+    """With their own specimen, the 20 added last, and 20 of the rest from first to last."""
+    campaign.add_entries((another(n), f"F{n:03}", Age(float(n // 100), "h")) for n in range(100))
+    (added,) = campaign.add_entries([(another(100), "F050", Age(5.0, "h"))])
+    found = campaign.diagnose([added.run]).runs
+    units = sorted(set(found.unit))
+    assert len(units) == 41
+    assert {"F000", "F050", "F079"}.union(f"F{n:03}" for n in range(80, 100)).issubset(units)
+    assert found.unit.count("F050") == 2
+    assert found.of_run.size == sum(len(another(0).dwells) for _ in range(42))
+    assert campaign.diagnose().runs.number == tuple(campaign.runs()["run"])
+
+
+def test_dwells_are_read_once_until_somebody_changes_the_file(
+    campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    campaign.add_entries([(another(0), "F1", Age(1.0, "h"))])
+    reads, read = [0], dwells.measured_of
+
+    def counted(*given: Any) -> Any:
+        reads[0] += 1
+        return read(*given)
+
+    monkeypatch.setattr(dwells, "measured_of", counted)
+    of_run, table = campaign.measured()
+    table[:] = 0.0
+    assert campaign.measured()[1].any()
+    assert reads == [1]
+    campaign.add_entries([(another(1), "F2", Age(1.0, "h"))])
+    assert campaign.measured()[0].size == 2 * of_run.size
+    with Campaign.open(campaign.path) as other:
+        other.add_entries([(another(2), "F3", Age(1.0, "h"))])
+    assert campaign.measured()[0].size == 3 * of_run.size
+    assert reads == [3]
+
+
+def test_among_few_runs_all_are_compared(campaign: Campaign) -> None:
+    added = campaign.add_entries((another(n), f"F{n}", Age(1.0, "h")) for n in range(12))
+    assert len(campaign.diagnose([added[3].run]).runs.number) == 12
 
 
 def test_a_fit_with_a_transition_is_kept_whole(

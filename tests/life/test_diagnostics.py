@@ -14,7 +14,9 @@ import polars as pl
 import pytest
 
 from hersey.life.age import Age
+from hersey.life.diagnostics.compared import Compared
 from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
+from hersey.life.diagnostics.fingerprint import Fingerprints
 from hersey.life.diagnostics.measured import MeasuredRuns
 from hersey.life.growth.fit import fit_growth
 from hersey.life.indicator import Indicator, Indicators, Runs
@@ -144,11 +146,17 @@ def test_logs_of_one_specimen_exchanged() -> None:
     }
 
 
+@cache
+def of_scaled_ages(unit: str, factor: float) -> Diagnosis:
+    """What is found if the ages of a specimen are so many times theirs."""
+    return diagnosed(measured(aged(factor, at(unit))))
+
+
 @pytest.mark.parametrize(
     ("unit", "factor"), [("U3", 1e-3), pytest.param("U7", 60.0, marks=pytest.mark.nightly)]
 )
 def test_ages_of_a_specimen_in_another_unit(unit: str, factor: float) -> None:
-    found = diagnosed(measured(aged(factor, at(unit))))
+    found = of_scaled_ages(unit, factor)
     (slip,) = facts(found)
     assert (slip["kind"], slip["unit"], slip["runs"]) == ("ages scaled", unit, 6)
     assert slip["factor"] == pytest.approx(factor)
@@ -164,33 +172,40 @@ def test_an_age_that_was_typed_wrong() -> None:
     assert slip["factor"] == pytest.approx(10.0)
 
 
-@pytest.mark.parametrize("age", [70000.0, pytest.param(None, marks=pytest.mark.nightly)])
-def test_torque_in_another_unit(age: float | None) -> None:
-    (slip,) = facts(diagnosed(measured(times(141.612, at("U2", age)))))
-    assert (slip["kind"], slip["unit"]) == ("torques scaled" if age is None else "torque scaled", "U2")
+@pytest.mark.nightly
+def test_torques_of_a_specimen_in_another_unit() -> None:
+    (slip,) = facts(diagnosed(measured(times(141.612, at("U2")))))
+    assert (slip["kind"], slip["unit"]) == ("torques scaled", "U2")
     assert slip["factor"] == pytest.approx(141.612)
-    assert slip.get("age") == age
 
 
-def test_a_run_of_another_machine() -> None:
-    found = diagnosed(measured(times(1.4, at("U5", 70000.0))))
-    (slip,) = facts(found)
-    assert (slip["kind"], slip["unit"], slip["run"], slip["age"]) == ("another machine", "U5", 27, 70000.0)
-    assert slip["factor"] == pytest.approx(1.4, rel=0.05)
-    assert found.excluded == [26]
-
-
-def test_a_run_with_another_lubricant() -> None:
-    runs = changed(lambda run: other_oil(run) if at("U5", 105000.0)(run) else run)
-    (slip,) = facts(diagnosed(measured(runs)))
-    assert (slip["kind"], slip["unit"], slip["run"]) == ("another lubricant or machine", "U5", 28)
-
-
-def test_a_log_that_was_copied() -> None:
+def test_slips_of_single_runs_are_each_named() -> None:
+    """A copied log, a torque in another unit, a run of another machine, and one with another lubricant."""
     (copied,) = [run for run in shipped() if at("U1", 70000.0)(run)]
-    runs = changed(lambda run: replace(copied, age=run.age) if at("U1", 105000.0)(run) else run)
-    (slip,) = facts(diagnosed(measured(runs)))
-    assert (slip["kind"], slip["run"], slip["other_run"]) == ("same log", 3, 4)
+    made: list[tuple[Callable[[Run], bool], Callable[[Run], Run]]] = [
+        (at("U1", 105000.0), lambda run: replace(copied, age=run.age)),
+        (at("U2", 70000.0), lambda run: replace(run, torque=141.612 * run.torque)),
+        (at("U5", 70000.0), lambda run: replace(run, torque=1.4 * run.torque)),
+        (at("U7", 105000.0), other_oil),
+    ]
+    runs = changed(lambda run: next((change(run) for which, change in made if which(run)), run))
+    found = diagnosed(measured(runs))
+    by_kind = {slip["kind"]: slip for slip in facts(found)}
+    assert set(by_kind) == {"same log", "torque scaled", "another machine", "another lubricant or machine"}
+    assert len(found.slips) == 4
+    assert (by_kind["same log"]["run"], by_kind["same log"]["other_run"]) == (3, 4)
+    torque, machine = by_kind["torque scaled"], by_kind["another machine"]
+    assert (torque["unit"], torque["run"], torque["age"]) == ("U2", 9, 70000.0)
+    assert torque["factor"] == pytest.approx(141.612)
+    assert (machine["unit"], machine["run"], machine["age"]) == ("U5", 27, 70000.0)
+    assert machine["factor"] == pytest.approx(1.4, rel=0.05)
+    lubricant = by_kind["another lubricant or machine"]
+    assert (lubricant["unit"], lubricant["run"]) == ("U7", 40)
+    assert found.excluded == [2, 3, 8, 26, 39]
+    table = found.to_frame()
+    far = table.filter(pl.col("distance (1)") > 5.0)["run"].to_list()
+    assert far == [9, 27, 40]  # each among the others as they should be
+    assert dict(zip(table["run"], table["slip"], strict=True))[9] == "torque scaled"
 
 
 def test_a_few_runs_are_not_doubted() -> None:
@@ -227,7 +242,7 @@ def medians(runs: list[Run], excluded: list[int]) -> dict[str, float]:
 def test_slips_do_not_move_the_other_specimens() -> None:
     right = medians(list(shipped()), [])
     runs = aged(1e-3, at("U3"))
-    found = diagnosed(measured(runs))
+    found = of_scaled_ages("U3", 1e-3)
     moved = medians(runs, found.excluded)
     others = [unit for unit in right if unit != "U3"]
     assert max(abs(moved[unit] / right[unit] - 1.0) for unit in others) < 0.03
@@ -257,3 +272,57 @@ def test_the_terminal_names_exchanged_logs_when_they_are_added(tmp_path: Path) -
     checked = typed("campaign", "check", "life.hersey", cwd=tmp_path)
     assert checked.returncode == 1
     assert "logs of U4 and U8 at 140000 pages look exchanged" in checked.words
+
+
+def of_some_runs() -> tuple[np.ndarray, np.ndarray, Fingerprints]:
+    """Numbers of 20 runs of four specimens: level and slope, with errors that differ."""
+    random = np.random.default_rng(4)
+    specimen, age = np.repeat(np.arange(4), 5), np.tile(np.linspace(0.0, 1.0, 5), 4)
+    level = 0.02 * random.standard_normal(4)[specimen] + 0.3 * age + 0.03 * random.standard_normal(20)
+    value = np.column_stack([level, 0.5 * level + 0.01 * random.standard_normal(20)])
+    variance = random.uniform(1e-4, 9e-4, (20, 2))
+    return specimen, age, Fingerprints(value, variance, np.ones(20, dtype=bool), 0.01)
+
+
+def test_whitened_numbers_have_the_variance_of_the_sum() -> None:
+    specimen, age, prints = of_some_runs()
+    found = Compared.of(specimen, age, prints)
+    there = found.with_runs(specimen, age, prints)
+    for i in range(20):
+        covariance = found.whiten @ np.diag(prints.variance[i]) @ found.whiten.T
+        for rows in (found.rows, there.rows):
+            np.testing.assert_allclose(rows.variance[i // 5, i % 5], np.diag(covariance), rtol=1e-12)
+            np.testing.assert_allclose(rows.value[i // 5, i % 5], found.whiten @ prints.value[i], rtol=1e-12)
+
+
+def test_distance_and_influence_are_those_of_a_trend_without_the_run() -> None:
+    """By regression of a Gaussian process on the other runs alone, one after the other."""
+    specimen, age, prints = of_some_runs()
+    at = Compared.of(specimen, age, prints)
+
+    def common(one: np.ndarray, other: np.ndarray, term: int) -> np.ndarray:
+        level, slope, walk, _ = (
+            getattr(at.spreads, name)[term] ** 2 for name in ("level", "slope", "walk", "run")
+        )
+        return np.asarray(level + slope * np.outer(one, other) + walk * np.minimum.outer(one, other))
+
+    def trend(kept: np.ndarray, to: float, term: int) -> tuple[float, float]:
+        times = age[kept]
+        left = (prints.value[kept] @ at.whiten.T - at.mean.at(times))[:, term]
+        own = np.diag(prints.variance[kept] @ (at.whiten**2).T[:, term] + at.spreads.run[term] ** 2)
+        weight = np.linalg.solve(common(times, times, term) + own, common(times, np.array([to]), term)[:, 0])
+        spread = common(np.array([to]), np.array([to]), term)[0, 0]
+        return float(weight @ left), float(spread - weight @ common(times, np.array([to]), term)[:, 0])
+
+    for i in range(20):
+        of = np.flatnonzero(specimen == specimen[i])
+        others = of[of != i]
+        squares = []
+        for term in range(2):
+            expected, variance = trend(others, age[i], term)
+            variance += float(prints.variance[i] @ (at.whiten[term] ** 2) + at.spreads.run[term] ** 2)
+            own = float(at.whiten[term] @ prints.value[i] - at.mean.at(age[[i]])[0, term])
+            squares.append((own - expected) ** 2 / variance)
+        assert at.distance[i] == pytest.approx(np.sqrt(np.mean(squares)), rel=1e-6)
+        moved = (trend(others, 1.0, 0)[0] - trend(of, 1.0, 0)[0]) / at.whiten[0, 0]
+        assert at.influence[i] == pytest.approx(np.expm1(moved), rel=1e-6, abs=1e-9)

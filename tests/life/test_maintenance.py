@@ -206,6 +206,15 @@ def test_an_event_of_nothing_is_refused(campaign: Path) -> None:
         assert len(opened.events()) == 2
 
 
+def test_spaces_of_a_name_do_not_count(tmp_path: Path) -> None:
+    with Campaign.create(tmp_path / "life.hersey") as opened:
+        shipped.add(opened, "U 1", 0.0, [(1.0, 0.1, 0.001, 400.0)])
+        added = opened.add_event(" U  1 ", "5 pages", "cleaned")
+        assert opened.events() == [added] == [Event("U 1", Age(5.0, "pages"), "cleaned", None)]
+        opened.remove_event(" U  1 ", "5 pages", "cleaned")
+        assert opened.events() == []
+
+
 def test_a_file_without_events_is_read_and_brought_up_to_date(campaign: Path) -> None:
     run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
     with sqlite3.connect(campaign / "life.hersey") as database:

@@ -204,7 +204,7 @@ def _in_the_unit_of_all(database: sqlite3.Connection, age: Age) -> Age:
 
 def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
     """The specimen's name, which must be one that can be read and typed again."""
-    unit = " ".join(unit.split())
+    unit = as_kept(unit)
     if not unit or len(unit) > _LONGEST_UNIT or printable(unit) != unit:
         raise ParameterError(
             f"specimen name '{unit[:_LONGEST_UNIT]}' is not valid. Give 1 to {_LONGEST_UNIT} "
@@ -218,6 +218,11 @@ def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
         f"specimen '{unit}' differs only slightly from the existing '{alike[0]}'. Use that name, or "
         f"{FORCE.to()} if it is another specimen"
     )
+
+
+def as_kept(unit: str) -> str:
+    """Return a specimen's name as the campaign keeps it: without spaces around it, one between words."""
+    return " ".join(unit.split())
 
 
 def _folded(unit: str) -> str:

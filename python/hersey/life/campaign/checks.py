@@ -12,6 +12,7 @@ from hersey.errors import FORCE, MissingFileError
 from hersey.files.reading import hash_of
 from hersey.life.age import Age
 from hersey.life.campaign.adding import age_unit, lies_at
+from hersey.life.diagnostics.run_compared import RunCompared
 from hersey.result import Record
 from hersey.schema.warning import Warning
 
@@ -26,11 +27,13 @@ _AT_ONCE = 60.0
 class CampaignCheck(Record):
     """What is not as it should be in a campaign of so many runs.
 
-    Values of each warning are ``run`` and ``unit`` where it concerns a run; else it concerns the file.
+    ``each`` is every run compared with its specimen and the others. Values of each warning are ``run`` and
+    ``unit`` where it concerns a run; else it concerns the file.
     """
 
     runs: int
     warnings: tuple[Warning, ...]
+    each: tuple[RunCompared, ...] = ()
 
     @property
     def ok(self) -> bool:

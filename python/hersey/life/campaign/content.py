@@ -8,6 +8,7 @@ are read.
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Collection
 from functools import cache
 from pathlib import Path
 
@@ -208,20 +209,28 @@ def _refuse_unknown_age_unit(database: sqlite3.Connection, path: Path, runs: int
         raise damaged(path, "'age unit' in table 'campaign' is not one word") from None
 
 
-def refuse_unsound_dwells(database: sqlite3.Connection, path: Path, run: int | None = None) -> None:
-    """Refuse dwells, of one run or of all, that are not as they are written; errors as above."""
-    where = "" if run is None else f"run_id = {int(run)} AND"
-    for number, column, asked in _wrong(database, "dwells", "run_id || ', dwell ' || number", _DWELLS, where):
+def refuse_unsound_dwells(
+    database: sqlite3.Connection, path: Path, runs: Collection[int] | None = None
+) -> None:
+    """Refuse dwells, of some runs or of all, that are not as they are written; errors as above."""
+    of_run = one_of("run_id", runs)
+    key = "run_id || ', dwell ' || number"
+    for number, column, asked in _wrong(database, "dwells", key, _DWELLS, f"{of_run} AND"):
         raise damaged(path, f"'{column}' of run {str(number)[:_SHOWN]} is not {asked}")
-    of_run = "" if run is None else f"WHERE id = {int(run)}"
-    counts = dict(database.execute(f"SELECT id, dwells FROM runs {of_run}").fetchall())
-    of_dwells = "" if run is None else f"WHERE run_id = {int(run)}"
-    for number, count in database.execute(f"SELECT run_id, count(*) FROM dwells {of_dwells} GROUP BY run_id"):
+    counts = dict(database.execute(f"SELECT id, dwells FROM runs WHERE {one_of('id', runs)}").fetchall())
+    for number, count in database.execute(
+        f"SELECT run_id, count(*) FROM dwells WHERE {of_run} GROUP BY run_id"
+    ):
         if counts.pop(number, None) != count:
             raise damaged(path, f"run {number} has {count} dwells, which is not the number stated")
     for number, count in counts.items():
         if count:
             raise damaged(path, f"run {number} should have {count} dwells and has none")
+
+
+def one_of(column: str, runs: Collection[int] | None) -> str:
+    """Return the condition that a column names one of some runs; for all one that always holds."""
+    return "1" if runs is None else f"{column} IN ({', '.join(str(int(run)) for run in runs)})"
 
 
 def _wrong(

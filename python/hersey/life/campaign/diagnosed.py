@@ -2,19 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+import polars as pl
 
 from hersey.arrays import FloatArray, IntArray
+from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
 from hersey.life.diagnostics.measured import MeasuredRuns, drive_torque
 from hersey.life.maintenance import Event
 
 if TYPE_CHECKING:
-    import polars as pl
-
     from hersey.damping.no_load_torque import NoLoadTorque
+    from hersey.log.sensors import Sensors
+
+#: Other specimens with which some are compared, half of them those added last, where logs get mixed up.
+_OTHERS = 40
+#: Runs from which on all are compared.
+_MANY = 1000
+
+
+def diagnosis_of(
+    runs: pl.DataFrame,
+    age_unit: str,
+    events: tuple[Event, ...],
+    of: Collection[int] | None,
+    drives: Callable[[Collection[int] | None], Mapping[int, tuple[NoLoadTorque | None, Sensors]]],
+    measured: Callable[[Collection[int] | None], tuple[IntArray, FloatArray]],
+) -> Diagnosis:
+    """Return what does not fit among all runs, or among some, ``of``, and those that they are compared with.
+
+    ``drives`` and ``measured`` read that of runs, as `Campaign` has them.
+    """
+    some = None if of is None else compared_with(runs, of)
+    if some is not None:
+        runs = runs.filter(runs["run"].is_in(some))
+    rests = {number: rest for number, (rest, _) in drives(some).items()}
+    return diagnosed(measured_runs(runs, age_unit, *measured(some), rests, events))
+
+
+def compared_with(runs: pl.DataFrame, of: Collection[int]) -> list[int] | None:
+    """Return the runs with which some are compared: of their specimens and of others; None for all."""
+    last = runs.group_by("unit", maintain_order=True).agg(run=pl.col("run").max())
+    own = set(runs.filter(pl.col("run").is_in(list(of)))["unit"])
+    others = [unit for unit in last.sort("run", descending=True)["unit"] if unit not in own]
+    added, rest = others[: _OTHERS // 2], others[_OTHERS // 2 :]
+    spread = np.linspace(0, len(rest) - 1, min(_OTHERS // 2, len(rest))).round().astype(int)
+    chosen = own.union(added, (rest[place] for place in spread))
+    some: list[int] = runs.filter(pl.col("unit").is_in(list(chosen)))["run"].to_list()
+    return some if len(some) <= _MANY else None
 
 
 def measured_runs(

@@ -6,7 +6,7 @@ import sqlite3
 
 from hersey.errors import ParameterError
 from hersey.life.age import Age
-from hersey.life.campaign.adding import age_unit
+from hersey.life.campaign.adding import age_unit, as_kept
 from hersey.life.maintenance import Event
 
 
@@ -25,7 +25,7 @@ def add_event(database: sqlite3.Connection, unit: str, age: Age, kind: str, run:
     UnitError
         If the ages of the campaign are in another unit.
     """
-    unit = " ".join(unit.split())
+    unit = as_kept(unit)
     if database.execute("SELECT 1 FROM runs WHERE unit = ?", (unit,)).fetchone() is None:
         raise ParameterError(f"no run is of specimen '{unit}'. Add its runs first")
     age = age.as_unit(age_unit(database))
@@ -41,7 +41,7 @@ def remove_event(database: sqlite3.Connection, unit: str, age: Age, kind: str) -
     ParameterError
         If there is none.
     """
-    age = age.as_unit(age_unit(database) or age.unit)
+    unit, age = as_kept(unit), age.as_unit(age_unit(database) or age.unit)
     where = "WHERE (unit, age, kind) = (?, ?, ?)"
     if not database.execute(f"DELETE FROM events {where}", (unit, age.value, kind)).rowcount:
         raise ParameterError(f"specimen '{unit}' has no event '{kind}' at {age}")

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
-from hersey.errors import OutputError, ParameterError, meant, way_in
+from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
-from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there, lies_at
+from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there
 from hersey.life.campaign.checks import CampaignCheck, check
-from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs
+from hersey.life.campaign.content import damaged, one_of, refuse_unsound_dwells, refuse_unsound_runs
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
+from hersey.life.campaign.listing import no_run, overview, runs_of
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 from hersey.life.maintenance import Event, kind_of
 from hersey.units import takes_si
@@ -32,11 +32,6 @@ if TYPE_CHECKING:
     from hersey.life.diagnostics.diagnosis import Diagnosis
     from hersey.log.sensors import Sensors
 
-#: Columns of the list of runs.
-_LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
-#: Specimens that a message lists.
-_SPECIMENS = 12
-
 
 class Campaign:
     """Runs of specimens at several ages, with their steady points, fits and origin, in one file.
@@ -49,6 +44,7 @@ class Campaign:
         """Take an open file: see `open` and `create`."""
         self.path, self._database = path, database
         self._home = path.absolute().parent
+        self._read: dict[str, tuple[tuple[int, int], Any]] = {}
 
     @classmethod
     def create(cls, path: str | Path, *, wait: float = PATIENCE) -> Campaign:
@@ -166,7 +162,7 @@ class Campaign:
             self._database.allow_what_the_size_needs()  # which has grown
             refuse_unsound_runs(self._database, self.path)  # what is added can be read again
             for each in added:
-                refuse_unsound_dwells(self._database, self.path, each.run)
+                refuse_unsound_dwells(self._database, self.path, [each.run])
             return added
 
     def add_event(self, unit: str, age: str | Age, event: str, *, run: int | None = None) -> Event:
@@ -224,33 +220,8 @@ class Campaign:
         ParameterError
             If there is no such specimen.
         """
-        import polars as pl
-
-        where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
         with sqlite_errors(self.path):
-            rows = self._database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
-            listed = [(*row[:3], str(lies_at(row[3], self._home)), *row[4:]) for row in rows]
-            if unit and not listed:
-                raise self._no_unit(unit)
-        numbers: dict[str, Any] = dict.fromkeys(("age", "exponent", "transition_speed"), pl.Float64)
-        names = ["run", "unit", "age", "log", *_LISTED.split(", ")[4:]]
-        kinds = dict.fromkeys(names, pl.String) | numbers | {"run": pl.Int64, "dwells": pl.Int64}
-        return pl.DataFrame(listed, schema=kinds, orient="row")
-
-    def _no_unit(self, unit: str) -> ParameterError:
-        known = [row[0] for row in self._database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
-        near = meant(unit, known)
-        more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
-        listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
-        way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
-        return ParameterError(f"{self.path.name} has no specimen '{unit}'", remedy=way)
-
-    @property
-    def _lists_runs(self) -> str:
-        """What shows the specimens and runs."""
-        terminal = way_in() == "terminal"
-        way = f"hersey campaign list {shlex.quote(str(self.path))}" if terminal else "campaign.runs()"
-        return f"list them with: {way}"
+            return runs_of(self._database, self.path, unit)
 
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run as they were added; rows of the log are not kept.
@@ -265,22 +236,22 @@ class Campaign:
         columns = ", ".join(f'"{name}"' for name in COLUMNS)
         reduction = self._of_run("reduction", run)
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path, run)
+            refuse_unsound_dwells(self._database, self.path, [run])
             dwells = self._database.execute(
                 f"SELECT {columns} FROM dwells WHERE run_id = ? ORDER BY number", (run,)
             ).fetchall()
         with self._naming(run, "reduction"):
             return points_of(reduction, dwells)
 
-    def drives(self) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
-        """Return the no-load torque subtracted from each run, and its sensors, by run.
+    def drives(self, runs: Collection[int] | None = None) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
+        """Return the no-load torque subtracted from each run, and its sensors, by run; of all or of ``runs``.
 
         Runs with the same no-load torque share one object.
         """
         from hersey.life.campaign.conversion import drive_of
 
         with sqlite_errors(self.path):
-            rows = self._database.execute("SELECT id, reduction FROM runs")
+            rows = self._database.execute(f"SELECT id, reduction FROM runs WHERE {one_of('id', runs)}")
             same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
             found = {}
             for number, reduction in rows:
@@ -304,11 +275,7 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
-        from hersey.life.campaign.records import read_json
-
-        kept = self._of_run("fit", run)
-        with self._naming(run, "fit"):
-            return None if kept is None else read_json(kept)
+        return self._json_of("fit", run)
 
     def settings(self, run: int) -> dict[str, Any]:
         """Return how the log of a run was read.
@@ -318,17 +285,20 @@ class Campaign:
         ParameterError
             If there is no such run.
         """
+        return self._json_of("settings", run) or {}
+
+    def _json_of(self, column: str, run: int) -> dict[str, Any] | None:
         from hersey.life.campaign.records import read_json
 
-        kept = self._of_run("settings", run)
-        with self._naming(run, "settings"):
-            return read_json(kept)
+        kept = self._of_run(column, run)
+        with self._naming(run, column):
+            return None if kept is None else read_json(kept)
 
     def _of_run(self, column: str, run: int) -> Any:
         with sqlite_errors(self.path):
             row = self._database.execute(f"SELECT {column} FROM runs WHERE id = ?", (run,)).fetchone()
         if row is None:
-            raise ParameterError(f"{self.path.name} has no run {run}", remedy=self._lists_runs)
+            raise no_run(self.path, run)
         return row[0]
 
     def dwells(self) -> pl.DataFrame:
@@ -337,31 +307,41 @@ class Campaign:
         The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is the
         no-load torque that was subtracted, or 0.
         """
-        import polars as pl
+        every: pl.DataFrame = self._unless_changed("dwells", self._dwells)
+        return every
 
-        from hersey.life.campaign.conversion import rests_of
-        from hersey.life.campaign.dwells import dwells_of, with_units
+    def _dwells(self) -> pl.DataFrame:
+        from hersey.life.campaign.dwells import dwells_of
 
+        rests = {run: rest for run, (rest, _) in self.drives().items()}
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
-            dwells = dwells_of(self._database)
-        rests = {run: rest for run, (rest, _) in self.drives().items()}
-        dwells = dwells.with_columns(pl.Series("rest", rests_of(dwells, rests)))
-        of = self.runs().select(pl.col("run").alias("run_id"), "unit", "age", "log")
-        joined = of.join(dwells, on="run_id", how="inner", maintain_order="left_right")
-        return with_units(joined, self.age_unit)
+            return dwells_of(self._database, self.runs(), rests, self.age_unit)
 
-    def measured(self) -> tuple[IntArray, FloatArray]:
-        """Return the numbers of every dwell for computations on torque.
+    def measured(self, runs: Collection[int] | None = None) -> tuple[IntArray, FloatArray]:
+        """Return the numbers of every dwell, of all runs or of ``runs``, for computations on torque.
 
         Number of the run, shape (dwells,), those of one run one after the other; speed (rad/s), temperature
         (K), torque and its error (N m), shape (dwells, 4), NaN where nothing was recorded.
         """
         from hersey.life.campaign.dwells import measured_of
 
+        def read() -> tuple[IntArray, FloatArray]:
+            with sqlite_errors(self.path):
+                refuse_unsound_dwells(self._database, self.path, runs)
+                return measured_of(self._database, runs)
+
+        of_run, table = read() if runs is not None else self._unless_changed("measured", read)
+        return of_run.copy(), table.copy()
+
+    def _unless_changed(self, what: str, read: Callable[[], Any]) -> Any:
+        """Return what was read before, if nobody has changed the file since."""
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path)
-            return measured_of(self._database)
+            version = self._database.execute("PRAGMA data_version").fetchone()[0]
+        state = version, self._database.total_changes
+        if what not in self._read or self._read[what][0] != state:
+            self._read[what] = state, read()
+        return self._read[what][1]
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
@@ -382,30 +362,24 @@ class Campaign:
         with sqlite_errors(self.path):
             refuse_unsound_dwells(self._database, self.path)
             found = check(self._database, self._home, progress)
-        return replace(found, warnings=(*found.warnings, *self.diagnose().warnings))
+        diagnosis = self.diagnose()
+        return replace(found, warnings=(*found.warnings, *diagnosis.warnings), each=diagnosis.each)
 
-    def diagnose(self) -> Diagnosis:
-        """Return which runs do not fit those of their specimen and of the others, and the likeliest slips."""
-        from hersey.life.campaign.diagnosed import measured_runs
-        from hersey.life.diagnostics.diagnosis import diagnosed
+    def diagnose(self, of: Collection[int] | None = None) -> Diagnosis:
+        """Return which runs do not fit those of their specimen and of the others, and the likeliest slips.
 
-        rests = {number: rest for number, (rest, _) in self.drives().items()}
-        events = tuple(self.events())
-        return diagnosed(measured_runs(self.runs(), self.age_unit, *self.measured(), rests, events))
+        Parameters
+        ----------
+        of
+            Numbers of runs that are compared with no more runs than it takes. Default: all, with all.
+        """
+        from hersey.life.campaign.diagnosed import diagnosis_of
+
+        return diagnosis_of(self.runs(), self.age_unit, tuple(self.events()), of, self.drives, self.measured)
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        runs, events = self.runs(), self.events()
-        units = runs["unit"].n_unique()
-        lines = [f"{self.path.name}: {runs.height} runs of {units} specimen{'s' * (units != 1)}"]
-        for (unit,), of in runs.group_by("unit", maintain_order=True):
-            first, last = Age(of["age"][0], self.age_unit), Age(of["age"][-1], self.age_unit)
-            failed = int((of["no_fit"] != "").sum())
-            ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
-            text = f"{unit}: {of.height} run{'s' * (of.height > 1)}, {ages}, {of['dwells'].sum()} dwells"
-            lines.append(text + (f", {failed} without a fit" if failed else ""))
-            lines += [f"  {each.kind} at {each.age}" for each in events if each.unit == unit]
-        return "\n".join(lines)
+        return overview(self.path.name, self.runs(), self.events(), self.age_unit)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""

@@ -29,7 +29,7 @@ _LIMITS = {
 }
 _SETTINGS = ("trusted_schema = OFF", "cell_size_check = ON", "mmap_size = 0", "foreign_keys = ON")
 #: Instructions of SQLite after which work is counted.
-_COUNTED = 1000
+_COUNTED = 10_000
 #: Instructions that one statement may take: before the tables are known, afterwards, and per byte of a file.
 _UNKNOWN, _LEAST, _PER_BYTE = 50_000, 5_000_000, 12
 #: Last bytes of a rollback journal that names a super-journal, which SQLite would delete.

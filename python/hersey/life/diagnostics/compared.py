@@ -39,15 +39,18 @@ class Compared:
     freedom: float = FREEDOM
 
     @classmethod
-    def of(cls, specimen: IntArray, age: FloatArray, prints: Fingerprints) -> Compared:
-        """Return known runs compared; ages are over a usual last age."""
+    def of(
+        cls, specimen: IntArray, age: FloatArray, prints: Fingerprints, near: Compared | None = None
+    ) -> Compared:
+        """Return known runs compared; ages are over a usual last age, ``near`` has almost the same runs."""
         raw = Rows.of(specimen, age, prints.value, prints.variance)
         floor = np.maximum(np.sqrt(np.median(prints.variance, axis=0)), _LEAST)
         whiten = whitening(innovations(raw, raw.value - robust_mean(raw).at(raw.age)), floor)
         variance = prints.variance @ (whiten**2).T
         rows = Rows.of(specimen, age, prints.value @ whiten.T, variance)
         mean = robust_mean(rows)
-        spreads = spreads_of(rows, rows.value - mean.at(rows.age))
+        near_by = None if near is None or near.terms != whiten.shape[0] else near.spreads
+        spreads = spreads_of(rows, rows.value - mean.at(rows.age), near_by)
         found = cls(rows, whiten, mean, spreads)
         return replace(found, freedom=freedom_of(found.squares, found.terms))
 
@@ -94,3 +97,21 @@ class Compared:
     def logs(self) -> FloatArray:
         """Log density of each run under the others of its specimen."""
         return self.density(self.squares, np.log(self.variance).sum(axis=1))
+
+    @property
+    def distance(self) -> FloatArray:
+        """Studentised distance of each run from what the others of its specimen say: 1 is the usual one."""
+        return np.asarray(np.sqrt(self.squares / self.terms))
+
+    @cached_property
+    def influence(self) -> FloatArray:
+        """By how much the torque of a specimen at its last age moves without each run, relative.
+
+        What all others say of a run and its weight in the trend give it, without another fit.
+        """
+        rows, spreads = self.rows, self.spreads
+        last = np.where(rows.given, rows.age, 0.0).max(axis=1, keepdims=True)
+        common = spreads.level[0] ** 2 + spreads.slope[0] ** 2 * last * rows.age
+        common = (common + spreads.walk[0] ** 2 * np.minimum(last, rows.age)) * rows.given
+        weight = (common[:, None] @ self.out.precision[:, 0])[:, 0]
+        return np.asarray(np.expm1(-rows.flat(weight * self.out.off[..., 0]) / self.whiten[0, 0]))

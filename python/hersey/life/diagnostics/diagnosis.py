@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hersey.life.age import Age
 from hersey.life.diagnostics.finding import find_slips
 from hersey.life.diagnostics.measured import MeasuredRuns
+from hersey.life.diagnostics.run_compared import RunCompared
 from hersey.life.diagnostics.said import warning_of
 from hersey.life.diagnostics.slips import Slip
 from hersey.schema.warning import Warning
+
+if TYPE_CHECKING:
+    import polars as pl
 
 #: Kind of the warning that says which runs growth does without.
 EXCLUDED = "runs excluded"
@@ -19,10 +26,11 @@ _NAMED = 8
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """The slips of the runs of a life test, the likeliest first."""
+    """The slips of the runs of a life test, the likeliest first, and how each run lies to its specimen."""
 
     runs: MeasuredRuns
     slips: tuple[Slip, ...]
+    each: tuple[RunCompared, ...] = ()
 
     @property
     def excluded(self) -> list[int]:
@@ -41,6 +49,15 @@ class Diagnosis:
             for slip in self.slips
             if numbers & {self.runs.number[place] for place in slip.runs}
         )
+
+    def to_frame(self) -> pl.DataFrame:
+        """Return one row per run: distance from the other runs of its specimen, influence, likeliest slip."""
+        import polars as pl
+
+        kinds = {"run": pl.Int64, "unit": pl.String, f"age ({self.runs.age_unit or '1'})": pl.Float64}
+        kinds |= {"distance (1)": pl.Float64, "influence (1)": pl.Float64, "slip": pl.String}
+        rows = [tuple(getattr(each, field.name) for field in fields(each)) for each in self.each]
+        return pl.DataFrame(rows, schema=kinds, orient="row")
 
     def warning_of_excluded(self) -> tuple[Warning, ...]:
         """Return which runs growth does without; nothing if it uses all."""
@@ -62,4 +79,21 @@ class Diagnosis:
 
 def diagnosed(measured: MeasuredRuns) -> Diagnosis:
     """Return the slips of runs."""
-    return Diagnosis(measured, tuple(find_slips(measured)))
+    found = find_slips(measured)
+    kinds = {place: slip.kind for slip in reversed(found.slips) for place in slip.runs}
+    each = tuple(
+        RunCompared(
+            measured.number[place],
+            measured.unit[place],
+            float(measured.age[place]),
+            _if_known(found.distance[place]),
+            _if_known(found.influence[place]),
+            kinds.get(place, ""),
+        )
+        for place in range(len(measured.number))
+    )
+    return Diagnosis(measured, tuple(found.slips), each)
+
+
+def _if_known(number: float) -> float | None:
+    return None if np.isnan(number) else float(number)

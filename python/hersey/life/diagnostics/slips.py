@@ -59,11 +59,13 @@ _OF_LAST, _OF_LEVELS = 0.4, 0.15
 #: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how
 #: much more the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
-#: Gain per logarithm by which an age lies closer to another of its specimen than a tenth of what those of
-#: others do: nobody measures twice in so short a time.
-_CROWDED, _FAR_CLOSER = 5.0, 10.0
+#: Gain per logarithm by which a small age lies closer to another of its specimen than half of what those of
+#: others do: nobody measures a new specimen twice in so short a time. Later some do. 10 times closer is odd.
+_CROWDED, _CLOSER, _FAR_CLOSER = 3.0, 2.0, 10.0
+#: Share of ages that follow no schedule, and how far those that do lie from it, in the usual gap of two.
+_UNPLANNED, _ABOUT = 0.05, 0.5
 #: The usual slip in the age of one run, and the gain that others lack: thousands typed as units.
-_THOUSAND, _LESS_USUAL = 1000.0, 2.0
+_THOUSAND, _LESS_USUAL = 1000.0, 4.0
 #: Ages closer than this, in the usual last one, are the same.
 _SAME_AGE = 1e-9
 
@@ -175,7 +177,8 @@ def ages_scaled(at: Compared) -> list[Slip]:
     of_runs = np.stack([_sequence(at, 1.0 / k) - now for k in factors], axis=2)
     # One run, of another machine or lubricant, is no reason to doubt the ages of all.
     gains = of_runs.sum(axis=1) - np.maximum(of_runs.max(axis=1), 0.0)
-    gains += np.stack([_schedule(at, last, k) for k in factors], axis=1)
+    ages = SharedAges.of(rows)
+    gains += np.stack([_schedule(at, last, ages, k) for k in factors], axis=1)
     gains -= np.log(len(AGE_FACTORS)) + np.where(np.arange(len(factors)) < len(AGE_FACTORS), 0.0, _UNUSUAL)
     gains[last <= 0.0] = -np.inf
     found = []
@@ -196,7 +199,7 @@ def _sequence(at: Compared, times: float) -> FloatArray:
     return np.asarray(at.density((white**2).sum(axis=1), logs) * rows.given)
 
 
-def _schedule(at: Compared, last: FloatArray, factor: float) -> FloatArray:
+def _schedule(at: Compared, last: FloatArray, ages: SharedAges, factor: float) -> FloatArray:
     """What the ages of the others say of a factor: the usual last age, and ages that are theirs."""
     usual = (
         np.array([np.median(np.delete(last, i)) for i in range(last.size)])
@@ -209,29 +212,45 @@ def _schedule(at: Compared, last: FloatArray, factor: float) -> FloatArray:
     # A specimen seen several times in a small part of the usual age is no new one.
     seen = np.count_nonzero(at.rows.given & (at.rows.age > 0.0), axis=1)
     gain = gain * np.clip(seen / 2.0, 1.0, _SEEN)
-    return np.asarray(
-        gain + np.minimum(_COINCIDES * (_shared_ages(at, factor) - _shared_ages(at, 1.0)), _MOST)
-    )
+    return np.asarray(gain + np.minimum(_COINCIDES * (ages.count(factor) - ages.count(1.0)), _MOST))
 
 
-def _shared_ages(at: Compared, factor: float) -> FloatArray:
-    """How many ages of each specimen, over a factor, are also those of others; 0 does not count."""
-    rows = at.rows
-    age = np.where(rows.given, rows.age, 0.0)
-    every = [set(_rounded(each)) for each in age]
-    count = np.zeros(len(age))
-    known: dict[float, int] = {}
-    for each in every:
-        for value in each:
-            known[value] = known.get(value, 0) + 1
-    for i, row in enumerate(age):
-        for value in set(_rounded(row / factor)) - {0.0}:
-            count[i] += known.get(value, 0) - (value in every[i]) >= 1
-    return count
+@dataclass(frozen=True)
+class SharedAges:
+    """Ages to six digits as whole numbers: which specimens have each, and how many do."""
+
+    row: IntArray  #: specimen of each run whose age is not 0
+    age: FloatArray
+    specimens: int
+    pairs: IntArray  #: specimens with their ages, ascending, each once
+    ages: IntArray  #: all ages, ascending
+    had_by: IntArray  #: how many specimens have each
+
+    @classmethod
+    def of(cls, rows: Rows) -> SharedAges:
+        """Return those of runs."""
+        age, specimens = rows.flat(rows.age), len(rows.age)
+        some = age > 0.0
+        pairs = np.unique(_to_six_digits(age[some]) * specimens + rows.row[some])
+        ages, had_by = np.unique(pairs // specimens, return_counts=True)
+        return cls(rows.row[some], age[some], specimens, pairs, ages, had_by)
+
+    def count(self, factor: float) -> FloatArray:
+        """Return how many ages of each specimen, over a factor, are also those of others."""
+        pairs = np.unique(_to_six_digits(self.age / factor) * self.specimens + self.row)
+        ages, row = np.divmod(pairs, self.specimens)
+        at = np.minimum(np.searchsorted(self.ages, ages), max(self.ages.size - 1, 0))
+        others = np.where(self.ages[at] == ages, self.had_by[at], 0) if self.ages.size else np.zeros(0)
+        others = others - np.isin(pairs, self.pairs)
+        return np.asarray(np.bincount(row, others >= 1, self.specimens), dtype=float)
 
 
-def _rounded(age: FloatArray) -> list[float]:
-    return [float(f"{each:.6g}") for each in age.tolist()]
+def _to_six_digits(age: FloatArray) -> IntArray:
+    """Ages, all above 0, as digits and exponent in one whole number."""
+    exponent = np.floor(np.log10(age))
+    digits = np.rint(age * 10.0 ** (5.0 - exponent))
+    exponent, digits = np.where(digits == 1e6, exponent + 1.0, exponent), np.where(digits == 1e6, 1e5, digits)
+    return np.asarray((exponent + 400.0) * 1e6 + digits, dtype=np.int64)
 
 
 def age_scaled(at: Compared) -> list[Slip]:
@@ -278,16 +297,37 @@ def _within(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatA
     top = max(float(others.max(initial=0.0)), 1e-12)
     law = stats.t(4, scale=_OF_LAST)
     out = np.where(age > 1.5 * top, law.logpdf(np.log(np.maximum(age, 1e-12) / top)) - law.logpdf(0.0), 0.0)
-    return _COINCIDES * shared - 3.0 * again + out - _CROWDED * _crowding(age, others, rows, row)
+    return (
+        _COINCIDES * shared
+        - 3.0 * again
+        + out
+        + _scheduled(age, rows, row)
+        - _CROWDED * _crowding(age, others, rows, row)
+    )
+
+
+def _scheduled(age: FloatArray, rows: Rows, row: int) -> FloatArray:
+    """How dense the ages of the other specimens are about an age, a logarithm."""
+    other = np.arange(len(rows.age)) != row
+    ages = rows.age[other][rows.given[other]]
+    scale = _ABOUT * (_least_gap(rows, other) or 1.0)
+    near = stats.norm.pdf(age[:, None], ages, scale).mean(axis=1)
+    return np.asarray(np.log((1.0 - _UNPLANNED) * near + _UNPLANNED / max(float(ages.max()), scale)))
 
 
 def _crowding(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatArray:
-    """How much closer to another of its specimen an age lies than a tenth of what those of others do."""
+    """How much closer to another of its specimen a small age lies than half of what those of others do.
+
+    Where the others of its specimen lie as close, all of its ages are small, and this one is as good as they.
+    """
     if not others.size:
         return np.zeros(age.shape)
     near = np.abs(age[:, None] - others).min(axis=1)
-    usual = _least_gap(rows, np.arange(len(rows.age)) != row)
-    return np.asarray(np.log(np.maximum(usual / (_FAR_CLOSER * np.maximum(near, _SAME_AGE)), 1.0)))
+    apart = np.diff(np.sort(others))
+    own = float(apart[apart > _SAME_AGE].min(initial=np.inf))
+    usual = min(_least_gap(rows, np.arange(len(rows.age)) != row), own)
+    closer = np.log(np.maximum(usual / (_CLOSER * np.maximum(near, _SAME_AGE)), 1.0))
+    return np.asarray(np.where(age < usual, closer, 0.0))
 
 
 def _nearest(rows: Rows) -> FloatArray:

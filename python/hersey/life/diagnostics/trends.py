@@ -34,6 +34,8 @@ _SPECIMENS = 40
 _NONE = 1e9
 #: How far the start of the search for spreads is known: deviation of their logarithms.
 _KNOWN = np.array([1.0, 1.5, 1.5, 0.7])
+#: Sides of its first simplex.
+_SIDES = np.array([0.7, -1.0, -1.0, -0.7])
 
 
 @dataclass(frozen=True)
@@ -197,18 +199,23 @@ def freedom_of(square: FloatArray, terms: int) -> float:
     return _FREEDOMS[int(np.argmax(gains))]
 
 
-def spreads_of(rows: Rows, left: FloatArray) -> Spreads:
-    """Return the spreads under which runs left out are most probable, by Student's law, of each term."""
+def spreads_of(rows: Rows, left: FloatArray, near: Spreads | None = None) -> Spreads:
+    """Return the spreads under which runs left out are most probable, by Student's law, of each term.
+
+    ``near`` are those of almost the same runs, from which a short search begins.
+    """
     some = np.flatnonzero(rows.given.sum(axis=1) >= 2)
     if not some.size:
         one = np.ones(left.shape[-1])
         return Spreads(3.0 * one, one, one, one)
     some = some[np.unique(np.linspace(0, some.size - 1, min(some.size, _SPECIMENS)).round().astype(int))]
-    found = np.array([_spreads_of_term(rows, left, some, term) for term in range(left.shape[-1])])
+    found = np.array([_spreads_of_term(rows, left, some, term, near) for term in range(left.shape[-1])])
     return Spreads(*np.exp(found.T))
 
 
-def _spreads_of_term(rows: Rows, left: FloatArray, some: IntArray, term: int) -> FloatArray:
+def _spreads_of_term(
+    rows: Rows, left: FloatArray, some: IntArray, term: int, near: Spreads | None
+) -> FloatArray:
     part = Rows(
         rows.age[some],
         rows.value[some][..., [term]],
@@ -228,7 +235,11 @@ def _spreads_of_term(rows: Rows, left: FloatArray, some: IntArray, term: int) ->
         logs = log_density(out.off[..., 0] ** 2 / out.variance[..., 0], np.log(out.variance[..., 0]), 1)
         return float(-logs[given].sum() + 0.5 * np.sum(((numbers - start) / _KNOWN) ** 2))
 
-    simplex = np.vstack([start, start + np.diag([0.7, -1.0, -1.0, -0.7])])
-    options: Any = {"maxfev": 160, "xatol": 0.05, "fatol": 0.05, "initial_simplex": simplex}
-    found = optimize.minimize(misfit, start, method="Nelder-Mead", options=options)
+    first, sides, most = start, _SIDES, 160
+    if near is not None:
+        first = np.log([getattr(near, name)[term] for name in ("level", "slope", "walk", "run")])
+        sides, most = 0.3 * _SIDES, 60
+    simplex = np.vstack([first, first + np.diag(sides)])
+    options: Any = {"maxfev": most, "xatol": 0.05, "fatol": 0.05, "initial_simplex": simplex}
+    found = optimize.minimize(misfit, first, method="Nelder-Mead", options=options)
     return np.asarray(found.x)

@@ -240,7 +240,7 @@ def film_life(
     oldest = {read.runs.unit[i]: float(read.runs.age[i]) for i in _last_runs(read.runs)}
     layers = replace(layers, last=np.array([oldest[name] for name in layers.names]))
     warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
-    return _film_life(read, layers, machine, track, other, warnings)
+    return _film_life(read, layers, segments.begun, machine, track, other, warnings)
 
 
 class SpecimensOfRuns(NamedTuple):
@@ -296,6 +296,7 @@ def _refuse_impossible(side_flow: float | None, evaporation: float | None, track
 def _film_life(
     read: FilmOfRuns,
     layers: LayersOfSpecimens,
+    begun: dict[str, float],
     machine: Machine,
     track: float | None,
     other_drag: OtherDrag,
@@ -304,7 +305,6 @@ def _film_life(
     ages = _CURVES * layers.drawn.greatest_age
     length = machine.roll_radius * 2.0 * np.pi if track is None else track
     starving = [layers.starving(point) for point in read.flooded]
-    begun = read.runs.segments(OF_FRICTION).begun
     pairs = zip(starving, read.points, strict=True)
     return FilmLife(
         runs=read.runs,

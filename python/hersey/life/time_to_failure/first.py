@@ -104,13 +104,14 @@ def ends_of_specimens(
     found, picks = [], []
     for i, name in enumerate(names):
         keys = np.stack([each.ages[:, i] for each in ending], axis=1)
-        order = order_by(keys, ranks_of(len(keys), of_runs, random))
+        own = np.stack([each.order[:, i] for each in ending], axis=1)
+        order = np.take_along_axis(own, ranks_of(len(keys), of_runs, random), axis=0)
         joint = np.take_along_axis(keys, order, axis=0)
         first = joint.min(axis=1)
         shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
         least = min(float(each.earliest.units[i]) for each in ending)
         end = age_at_limit(name, first, last[name], least)
-        middle = {e.mode.name: float(np.median(e.ages[:, i])) for e in ending}
+        middle = {e.mode.name: float(e.medians[i]) for e in ending}
         near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
         found.append(SpecimenEnd(name, end, shares, near))
         picks.append((order, first))

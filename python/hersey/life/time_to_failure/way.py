@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray
+from hersey.arrays import FloatArray, IntArray
 from hersey.errors import InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, Earliest, ages_at_limit
@@ -60,6 +61,16 @@ class FittedWay:
     def drawn_values(self, unit: str, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return draws of the indicator of a specimen at ages, as `Growth.drawn_values`."""
         return self.mode.growth.drawn_values(self.row[unit], age - self.begun[unit])
+
+    @cached_property
+    def order(self) -> IntArray:
+        """Draws of each specimen in the order of their ages, (draws, specimens)."""
+        return np.asarray(np.argsort(self.ages, axis=0, kind="stable"))
+
+    @cached_property
+    def medians(self) -> FloatArray:
+        """Median age of each specimen."""
+        return np.asarray(np.median(self.ages, axis=0))
 
     @property
     def middle(self) -> FloatArray:

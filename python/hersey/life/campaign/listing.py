@@ -1,0 +1,81 @@
+"""The runs of a campaign as a table, and its specimens as text."""
+
+from __future__ import annotations
+
+import shlex
+import sqlite3
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hersey.errors import ParameterError, meant, way_in
+from hersey.life.age import Age
+from hersey.life.campaign.adding import lies_at
+from hersey.life.maintenance import Event
+
+if TYPE_CHECKING:
+    import polars as pl
+
+_LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
+#: Specimens that a message lists.
+_SPECIMENS = 12
+
+
+def runs_of(database: sqlite3.Connection, path: Path, unit: str) -> pl.DataFrame:
+    """Return one row per run, as `Campaign.runs`.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such specimen.
+    """
+    import polars as pl
+
+    where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
+    rows = database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
+    home = path.absolute().parent
+    listed = [(*row[:3], str(lies_at(row[3], home)), *row[4:]) for row in rows]
+    if unit and not listed:
+        raise _no_unit(database, path, unit)
+    numbers: dict[str, Any] = dict.fromkeys(("age", "exponent", "transition_speed"), pl.Float64)
+    names = ["run", "unit", "age", "log", *_LISTED.split(", ")[4:]]
+    kinds = dict.fromkeys(names, pl.String) | numbers | {"run": pl.Int64, "dwells": pl.Int64}
+    return pl.DataFrame(listed, schema=kinds, orient="row")
+
+
+def _no_unit(database: sqlite3.Connection, path: Path, unit: str) -> ParameterError:
+    known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
+    near = meant(unit, known)
+    more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
+    listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
+    way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
+    return ParameterError(f"{path.name} has no specimen '{unit}'", remedy=way)
+
+
+def no_run(path: Path, run: int) -> ParameterError:
+    """Return the error of a run that is not there, with what lists those that are."""
+    way = f"hersey campaign list {shlex.quote(str(path))}" if way_in() == "terminal" else "campaign.runs()"
+    return ParameterError(f"{path.name} has no run {run}", remedy=f"list them with: {way}")
+
+
+def overview(name: str, runs: pl.DataFrame, events: list[Event], age_unit: str) -> str:
+    """Return how many runs and specimens there are, and a line per specimen with its maintenance."""
+    import polars as pl
+
+    specimens = runs.group_by("unit", maintain_order=True).agg(
+        count=pl.len(),
+        first=pl.col("age").first(),
+        last=pl.col("age").last(),
+        dwells=pl.col("dwells").sum(),
+        failed=(pl.col("no_fit") != "").sum(),
+    )
+    done: dict[str, list[str]] = {}
+    for each in events:
+        done.setdefault(each.unit, []).append(f"  {each.kind} at {each.age}")
+    plural = "s" * (specimens.height != 1)
+    lines = [f"{name}: {runs.height} runs of {specimens.height} specimen{plural}"]
+    for unit, count, start, end, dwells, failed in specimens.iter_rows():
+        first, last = Age(start, age_unit), Age(end, age_unit)
+        ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
+        text = f"{unit}: {count} run{'s' * (count > 1)}, {ages}, {dwells} dwells"
+        lines += [text + (f", {failed} without a fit" if failed else ""), *done.get(unit, [])]
+    return "\n".join(lines)
