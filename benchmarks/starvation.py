@@ -45,7 +45,7 @@ class Case:
 def logs_of(world: World, random: np.random.Generator) -> list[Log]:
     """Return 5 to 10 logs of each specimen: dwells with noise of 1 %, and errors of gain and zero."""
     drive = world.drive
-    stop = float(np.median(world.starved)) * random.uniform(0.5, 1.1)
+    stop = float(np.median(world.thin)) * random.uniform(0.5, 1.1)
     kelvins = np.linspace(drive.cold, drive.hot, random.integers(5, 8))
     speeds = drive.fast * np.geomspace(random.uniform(0.03, 0.12), 1.05, random.integers(8, 13))
     speed, kelvin = (each.ravel() for each in np.meshgrid(speeds, kelvins))

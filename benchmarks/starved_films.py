@@ -25,6 +25,8 @@ LAWS = ("tanh", "fading", "reynolds", "mixed")
 #: Shares of the drag, flooded, at full speed and hot, that do not follow the film.
 SHARES = (0.0, 0.05, 0.15, 0.3, 0.4)
 UNITS = 8
+#: Film over flooded film below which a film is starved.
+STARVED = 0.5 ** (1.0 / 3.0)
 #: Ages on which truth is looked up, over the median age of starvation.
 AGES = np.linspace(0.0, 6.0, 1201)
 
@@ -120,10 +122,14 @@ def torque(drive: Drive, state: State, speed: np.ndarray, kelvin: np.ndarray) ->
 
 @dataclass(frozen=True)
 class World:
-    """A campaign as it truly is: states of its specimens at `AGES`, and when they starve."""
+    """A campaign as it truly is: states of its specimens at `AGES`, and when they starve.
+
+    ``thin`` are the ages at which the layer is as thin as the flooded film.
+    """
 
     drive: Drive
     states: State
+    thin: np.ndarray
     starved: np.ndarray
 
     def at(self, unit: int, age: float) -> State:
@@ -142,9 +148,11 @@ def draw(seed: int) -> World:
         product = states.thicker * drive.viscosity(drive.hot) * drive.fast
         over = states.layer / drive.flooded(product)
         # The median specimen starves near age 1, whatever its oil does.
-        starved = np.array([np.interp(0.0, -np.log(row), AGES, right=np.inf) for row in over])
-        if 0.6 < np.median(starved) < 2.0 and over[:, 0].min() > 1.2:
-            return World(drive, states, starved)
+        thin = np.array([np.interp(0.0, -np.log(row), AGES, right=np.inf) for row in over])
+        if 0.6 < np.median(thin) < 2.0 and over[:, 0].min() > 1.2:
+            lost, most = -np.log(drive.left(over)[0]), -np.log(STARVED)
+            starved = np.array([np.interp(most, row, AGES, right=np.inf) for row in lost])
+            return World(drive, states, thin, starved)
 
 
 def _drive(random: np.random.Generator, law: str, share: float) -> Drive:

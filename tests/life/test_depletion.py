@@ -18,6 +18,7 @@ from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film import layer as layer_module
 from hersey.life.film import starving
 from hersey.life.film.common_to_runs import Common
+from hersey.life.film.depletion_draws import fit_depletion
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import LayerFit, Layers, layers
 from hersey.life.film.of_runs import starvation_indicator
@@ -35,9 +36,18 @@ from hersey.life.film.starved_drag import (
     film_of,
     flooded,
 )
-from hersey.life.film.through_life import STARVED, film_life
+from hersey.life.film.through_life import film_life
 from hersey.life.indicator import Indicators, Runs
-from hersey.life.oil_layer import USUAL_SHARPNESS, age_of_layer, log_fading_share, log_film_share, log_layer
+from hersey.life.oil_layer import (
+    STARVED,
+    USUAL_SHARPNESS,
+    age_of_layer,
+    log_fading_share,
+    log_film_share,
+    log_layer,
+    log_share_between,
+    starved_layer,
+)
 from hersey.lubrication.film import film_thickness
 from hersey.testbench import population
 from hersey.testbench.ageing import Ageing
@@ -162,11 +172,58 @@ def test_the_layer_follows_its_law() -> None:
         near = np.exp(log_layer(new, side_flow, evaporation, np.array([age - 1e-5, age + 1e-5])))
         assert (near[1] - near[0]) / 2e-5 == pytest.approx(-0.15 * here**3 - 0.7 * here, rel=1e-6)
     assert age_of_layer(new, side_flow, evaporation, np.log(layer)) == pytest.approx(ages)
+    for power in (0.5, 2.8):
+        slowed = np.exp(log_layer(np.exp(-power * np.log(2.0)), side_flow, evaporation, ages, power))
+        near = np.exp(
+            log_layer(2.0**-power, side_flow, evaporation, np.array([1.0 - 1e-5, 1.0 + 1e-5]), power)
+        )
+        loss = 0.3 / power * slowed[2] ** (power + 1.0) + 0.7 * slowed[2]
+        assert slowed[0] == pytest.approx(2.0)
+        assert (near[0] - near[1]) / 2e-5 == pytest.approx(loss, rel=1e-6)
     nothing = np.zeros(())
     alone = np.exp(log_layer(new, side_flow, nothing, ages))
     assert alone == pytest.approx((0.25 + 0.3 * ages) ** -0.5)
     steady = np.exp(log_layer(new, nothing, evaporation, ages))
     assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_the_power_of_side_flow_is_learned(power: float) -> None:
+    """Six layers that thin as (1 + p k t)^(-1/p) with k = 4, and what is left at twice the greatest age."""
+    contact, lubricant = film_of(shipped.machine())
+    reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
+    random, age = np.random.default_rng(4), np.tile(np.linspace(0.0, 1.0, 7), 6)
+    unit = np.repeat(np.arange(6), 7)
+    place = 0.6 - np.log1p(power * 4.0 * age) / power + 0.02 * random.standard_normal(age.size)
+    steps = np.linspace(-6.0, 6.0, 13)
+    places, ones = place[:, None] + 0.02 * steps, np.ones((age.size, steps.size))
+    told = Layers(
+        place=places,
+        deviance=steps**2 * ones,
+        viscosity=0.0 * ones,
+        temperature_sensitivity=0.0 * ones,
+        viscosity_error=0.01 * ones,
+        temperature_sensitivity_error=0.01 * ones,
+        best=place,
+        scatter=ones[:, 0],
+        freedom=30.0 * ones[:, 0],
+        used=45.0 * ones[:, 0],
+        reference=reference,
+        common=np.zeros(7),
+    )
+    drawn = fit_depletion(told, unit, age)
+    assert np.median(drawn.rate(drawn.mean)["p"]) == pytest.approx(power, rel=0.35)
+    new = cubic(reference.film, np.zeros(()))[0].item() + 0.6
+    layer = np.median(drawn.layer(drawn.specimens, np.array([2.0]))[..., 0] - new, axis=0)
+    assert layer == pytest.approx(np.full(6, -np.log1p(power * 8.0) / power), abs=0.2)
+
+
+@pytest.mark.parametrize(("sharpness", "fading"), [(3.0, 0.0), (3.0, 1.0), (1.5, 0.5), (6.5, -0.2)])
+def test_the_layer_at_which_a_film_starves(sharpness: float, fading: float) -> None:
+    at = starved_layer(sharpness, fading)
+    assert np.exp(log_share_between(at, sharpness, fading)[0]) == pytest.approx(STARVED)
+    if sharpness == USUAL_SHARPNESS:
+        assert at == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("sharpness", [2.0, USUAL_SHARPNESS, 5.0])
@@ -264,10 +321,34 @@ def test_the_share_is_learned_where_the_dwells_show_it() -> None:
     free[:, CONSTANT] = 0.1
     torque = search.drag.torque(free)[0]
     dwells = replace(bare, torque=torque, error=0.01 * torque)
-    found = by_share(replace(fit, dwells=dwells), [f"U{k}" for k in range(6)])
+    fit, names, young = replace(fit, dwells=dwells), [f"U{k}" for k in range(6)], np.ones(6, dtype=bool)
+    found = by_share(fit, names, young)
     assert int(np.argmax(found.weight)) == 3
     assert found.weight[0] < 0.02
     assert found.likeliest.best[:5] == pytest.approx(free[:5, LAYER], abs=0.05)
+    # New lubricant as on its data sheet makes a share less likely that needs another.
+    aged = by_share(fit, names, ~young)
+    off = [np.median(each.likeliest_viscosity()[0]) for each in found.layers]
+    error = [np.median(each.likeliest_viscosity()[1]) for each in found.layers]
+    odds = aged.weight * np.exp(-0.5 * np.square(off) / (fit.level**2 + np.square(error)))
+    assert found.weight == pytest.approx(odds / odds.sum(), rel=1e-6)
+    assert abs(off[3]) < 0.05 < 0.2 < abs(off[0])
+
+
+@pytest.mark.parametrize(("stated", "nip"), [(0.2, 0.1), (0.02, None)])
+def test_how_well_torque_shows_new_lubricant(stated: float, nip: float | None) -> None:
+    """Viscosity, and 15 % of the film and the nip over the power of torque; 10 % of a nip is not stated."""
+    bare, _ = example_drive()
+    assert bare.contact is not None
+    assert bare.lubricant is not None
+    contact = replace(bare.contact, nip_uncertainty=nip)
+    machine = replace(bare, contact=contact, lubricant=replace(bare.lubricant, uncertainty=stated))
+    speed, kelvin = (each[None] for each in grid())
+    dwells = FilledDwells(speed, kelvin, speed, speed, np.ones(speed.shape, dtype=bool))
+    fit = LayerFit.of(dwells, machine, speed=COLD[0], kelvin=COLD[1])
+    up, down = (cubic(fit.other.shear, np.asarray(step))[0].item() for step in (1e-4, -1e-4))
+    of_torque = np.hypot(0.15, np.log(1.1) / 1.96) / ((up - down) / 2e-4)
+    assert fit.level == pytest.approx(np.hypot(np.log(1.0 + stated) / 1.96, of_torque), rel=1e-5)
 
 
 def test_of_many_specimens_some_are_followed_at_each_share() -> None:

@@ -23,7 +23,9 @@ from hersey.charts.style import (
     stacked,
     tip,
 )
-from hersey.life.film.through_life import STARVED, Estimates, FilmLife
+from hersey.life.film.of_runs import Estimates
+from hersey.life.film.through_life import FilmLife
+from hersey.life.oil_layer import STARVED
 
 #: Units drawn by themselves, in rows of so many, and the size of each.
 _SHOWN, _ACROSS = 8, 4
@@ -118,10 +120,10 @@ def _layers(film: FilmLife, ages: BoolArray, names: list[str], chosen: list[int]
     lines = [alt.hconcat(*each[i : i + _ACROSS], spacing=14) for i in range(0, len(each), _ACROSS)]
     more = f"; the {len(chosen)} specimens that starve first" if len(chosen) < len(names) else ""
     subtitle = (
-        f"blue: oil layer; orange: flooded film at {film.points[0].name}, which grows as the oil thickens; "
+        f"blue: oil layer; orange: layer needed at {film.points[0].name}, which grows as the oil thickens; "
         "the film starves where they meet"
     )
-    title = alt.Title(f"Oil layer and the layer that a flooded film needs{more}", subtitle=subtitle)
+    title = alt.Title(f"Oil layer and the layer that the film needs{more}", subtitle=subtitle)
     return alt.vconcat(*lines, spacing=10, title=title)
 
 
@@ -136,7 +138,7 @@ def _layer(film: FilmLife, ages: BoolArray, name: str, k: int, most: float, *, f
     x = _age(film, ages, ticks=3)
     scale = alt.Scale(domain=[0.0, most], nice=False)
     y = alt.Y("value:Q", title="Layer (µm)" if first else None, scale=scale)
-    tips = [age_tip(film.runs.age_unit), tip("value", "layer (µm)"), tip("need", "flooded film (µm)")]
+    tips = [age_tip(film.runs.age_unit), tip("value", "layer (µm)"), tip("need", "layer needed (µm)")]
     chart = plot(rows)
     seen = plot(_runs(film, film.layer, most=most, unit=name, factor=1.0 / _MICRO))
     return alt.layer(

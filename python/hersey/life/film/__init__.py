@@ -7,7 +7,8 @@ run_search      what is most likely in each run: a damped search of all runs at 
 common_to_runs  what all runs have in common, fitted to all of them together
 layer           the layer of oil and the viscosity of each run
 shares          how much of the drag does not follow the film, and how likely that is
-depletion_law   how the layer thins over ages and specimens: draws
+depletion_law   how the layer thins over ages and specimens
+depletion_draws draws of that law
 of_runs         the film that each run shows, and starvation as an indicator
 starving        when specimens starve, and the oil that they have left
 through_life    `film_life`: film, oil that is left, ages at which specimens starve

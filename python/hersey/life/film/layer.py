@@ -23,6 +23,7 @@ from hersey.life.film.run_search import ALL_BUT_LAYER, COMMON, DRY, FLOODED, Sea
 from hersey.life.film.starved_drag import (
     BOUNDARY,
     CONSTANT,
+    FADING,
     FREE,
     LAYER,
     PER_KELVIN,
@@ -40,7 +41,7 @@ from hersey.life.film.starved_drag import (
     flooded,
 )
 from hersey.life.growth.limit_ages import DEVIATIONS
-from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
+from hersey.life.oil_layer import USUAL_SHARPNESS, log_share_between, starved_layer
 from hersey.machine.machine import Machine
 
 #: Where the likelihood of a run is looked at, in its standard errors from the most likely layer; the last
@@ -57,6 +58,10 @@ _LEVEL, _ROUGH, _HARD, _REST, _REST_PER_100_KELVIN = 2.0, 0.7, 0.4, 1.0, 0.05
 _RUNS_FOR_SHARED = 120
 #: Share by which viscosity may be off (95 %), where the lubricant does not state it.
 _UNSTATED = 0.2
+#: The same of the width of the nip.
+_UNSTATED_NIP = 0.1
+#: By how much laws of the film differ, ln of the thickness (standard deviation).
+_FILM_LAW = 0.15
 #: Standard errors in the 95 % that an uncertainty is stated at.
 _TO_95 = 1.96
 #: Film over roughness below which asperities that the machine does not describe may touch, and dwells that a
@@ -93,6 +98,26 @@ class Layers:
         """Of starvation."""
         return USUAL_SHARPNESS * float(np.exp(self.common[SHARPNESS - TEMPERATURE_SENSITIVITY]))
 
+    @property
+    def fading(self) -> float:
+        """How far starvation is by the law that fades."""
+        return float(self.common[FADING - TEMPERATURE_SENSITIVITY])
+
+    @property
+    def starved_at(self) -> float:
+        """The layer over the flooded film, ln, at which the film is starved."""
+        return float(starved_layer(self.sharpness, self.fading))
+
+    def log_share(self, layer: FloatArray) -> FloatArray:
+        """Return ln of the film over the flooded one, from ln of the layer over that."""
+        return log_share_between(layer, self.sharpness, self.fading)[0]
+
+    def likeliest_viscosity(self) -> tuple[FloatArray, FloatArray]:
+        """Return ln of the factor on viscosity at the most likely layer, and its standard error."""
+        rows = np.arange(len(self.best))
+        at = np.abs(self.place - self.best[:, None]).argmin(axis=1)
+        return self.viscosity[rows, at], self.viscosity_error[rows, at]
+
     def film_at(self, point: Flooded) -> tuple[FloatArray, FloatArray]:
         """Return ln of the flooded film (m) at a point as each place has it, and its standard error.
 
@@ -123,7 +148,7 @@ class Layers:
         """Return the most likely ln of the film (m) at a point, and its interval."""
         full, error = self.film_at(point)
         layer = self.place + self.film_at(self.reference)[0] - full
-        film = full + log_film_share(layer, self.sharpness)[0]
+        film = full + self.log_share(layer)
         best, low, high = self._ends(film - self.place, error, level)
         # However thick the layer, the film is the flooded one.
         most = film[:, -1] + DEVIATIONS * error[:, -1]
@@ -161,6 +186,7 @@ class LayerFit:
     other: Flooded  #: where the share of the other drag is stated
     middle: float  #: temperature, K
     sensitivity: float  #: standard deviation of the change of ln viscosity from hot to cold
+    level: float  #: that of ln viscosity of new lubricant as torque shows it
     roughness: float | None
     asperities: SharedLoad | None
 
@@ -208,6 +234,7 @@ class LayerFit:
             at,
             middle,
             _sensitivity_deviation(uncertainty),
+            _level_deviation(uncertainty, contact.nip_uncertainty, at),
             contact.roughness,
             None if mixed is None else SharedLoad.of(mixed, middle),
         )
@@ -266,6 +293,16 @@ def _nominal(point: Flooded) -> float:
 def _sensitivity_deviation(uncertainty: float) -> float:
     """Standard deviation of the change of ln viscosity between two points each known so well."""
     return max(float(np.sqrt(2.0) * np.log1p(uncertainty)) / _TO_95, 1e-3)
+
+
+def _level_deviation(uncertainty: float, nip: float | None, point: Flooded) -> float:
+    """Standard deviation of ln viscosity of new lubricant, as the torque at a point shows it.
+
+    Film and nip are not known either, and torque is a small power of viscosity.
+    """
+    of_torque = np.hypot(_FILM_LAW, np.log1p(_UNSTATED_NIP if nip is None else nip) / _TO_95)
+    power = max(float(cubic(point.shear, np.zeros(()))[1].item()), 0.1)
+    return float(np.hypot(np.log1p(uncertainty) / _TO_95, of_torque / power))
 
 
 def _on_film(given: BoolArray, film: Flooded, roughness: float) -> BoolArray:

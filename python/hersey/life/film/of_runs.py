@@ -16,7 +16,8 @@ from hersey.life.film.shares import ByShare, by_share
 from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
 from hersey.life.growth.limit_ages import DEVIATIONS
 from hersey.life.indicator import Indicator, Runs
-from hersey.life.oil_layer import log_film_share
+from hersey.life.maintenance import OF_FRICTION
+from hersey.life.oil_layer import STARVED
 from hersey.machine.sharing import NEEDED
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 #: What is most likely, and both ends of its interval.
 Ends = tuple[FloatArray, ...]
+#: Ages over the greatest until which lubricant counts as new.
+_YOUNG = 0.05
 #: How likely a share of other drag is for whose sake an interval is widened.
 _LIKELY = 0.1
 #: Dwells of a run from which it shows a film.
@@ -101,9 +104,7 @@ class FilmOfRuns:
 
     def film(self, point: Flooded) -> Estimates:
         """Return the film over the flooded one at a point."""
-        return self.spread(
-            lambda found: tuple(log_film_share(each, found.sharpness)[0] for each in found.interval(point))
-        )
+        return self.spread(lambda found: tuple(found.log_share(each) for each in found.interval(point)))
 
     def thickness(self, point: Flooded) -> Estimates:
         """Return the film at a point, m."""
@@ -118,8 +119,10 @@ class FilmOfRuns:
         return self.spread(_viscosity)
 
     def indicator(self, more: tuple[Warning, ...] = ()) -> Indicator:
-        """Return starvation as a failure mode, with more warnings: flooded film over layer, limit 1."""
-        best, low, high = self._ends(lambda found: found.interval(self.flooded[0]))
+        """Return starvation as a failure mode, with more warnings: layer needed over layer, limit 1."""
+        best, low, high = self._ends(
+            lambda found: tuple(each - found.starved_at for each in found.interval(self.flooded[0]))
+        )
         seen = np.isfinite(low) & np.isfinite(high)
         value = np.where(seen, np.exp(-best), np.nan)
         error = np.where(seen, np.where(seen, high - low, 0.0) / (2.0 * DEVIATIONS), np.nan)
@@ -133,8 +136,9 @@ class FilmOfRuns:
             warnings=(
                 Warning(
                     "starvation defined",
-                    "the film is starved where the oil layer is thinner than a flooded film at {point} "
+                    "the film is starved where it is below {share:.2f} of a flooded film at {point} "
                     "({speed:.4g rpm}, {temperature:.4g degC})",
+                    share=STARVED,
                     point=self.points[0].name,
                     speed=self.points[0].speed,
                     temperature=self.points[0].temperature,
@@ -186,7 +190,8 @@ def film_of_runs(
     fast, cold_corner = ((each.speed, each.temperature) for each in points)
     fit = LayerFit.of(dwells, machine, speed=cold_corner[0], kelvin=cold_corner[1], other=fast)
     _refuse_touching(fit, points[0])
-    by = by_share(fit, [runs.unit[i] for i in places])
+    age = runs.segments(OF_FRICTION).age[places]
+    by = by_share(fit, [runs.unit[i] for i in places], age <= _YOUNG * age.max())
     found = by.likeliest
     if (scatter := float(np.median(found.scatter))) > _BAD:
         raise InsufficientDataError(
@@ -290,7 +295,7 @@ def systematic_factor(machine: Machine, read: FilmOfRuns) -> float:
 
 @one_thread()
 def starvation_indicator(campaign: Campaign, machine: Machine) -> Indicator:
-    """Return starvation as a failure mode: flooded film over layer at the fastest operating point, limit 1.
+    """Return starvation as a failure mode: layer needed over layer at the fastest operating point, limit 1.
 
     It needs a machine with contact and lubricant, and dwells at several speeds and temperatures: the layer is
     seen where it is thinner than a flooded film or near it, cold and fast. A run all of whose dwells are

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.film.layer import LayerFit, Layers
 from hersey.result import Means, Record
 
@@ -95,20 +95,30 @@ class ByShare:
         return float(np.interp(of, np.concatenate([[0.0], np.cumsum(self.weight)]), _ENDS))
 
 
-def by_share(fit: LayerFit, units: list[str]) -> ByShare:
-    """Return the layers of runs at shares of other drag from 0 to 45 %; ``units`` are their specimens."""
+def by_share(fit: LayerFit, units: list[str], young: BoolArray) -> ByShare:
+    """Return the layers of runs at shares of other drag from 0 to 45 %.
+
+    ``units`` are their specimens, and ``young`` says in which the lubricant is as good as new.
+    """
     found = [fit.together(share) for share in SHARES.tolist()]
-    unlikely = np.array([each.unlikely for each in found])
-    weight = np.diff(_ENDS) * np.exp(-0.5 * _COUNT_AS * (unlikely - unlikely.min()))
-    weight /= weight.sum()
-    best = int(np.argmax(weight))
     some = _some_runs(units)
-    if some.size == len(units):
-        layers = tuple(fit.layers(each.common) for each in found)
-        return ByShare(weight, some, layers, layers[best], fit.computed_share)
     part = replace(fit, dwells=fit.dwells.rows(some))
     layers = tuple(part.layers(each.common) for each in found)
-    return ByShare(weight, some, layers, fit.layers(found[best].common), fit.computed_share)
+    unlikely = _COUNT_AS * np.array([each.unlikely for each in found])
+    unlikely += [_off_level(each, fit.level, young[some]) for each in layers]
+    weight = np.diff(_ENDS) * np.exp(-0.5 * (unlikely - unlikely.min()))
+    weight /= weight.sum()
+    best = int(np.argmax(weight))
+    likeliest = layers[best] if some.size == len(units) else fit.layers(found[best].common)
+    return ByShare(weight, some, layers, likeliest, fit.computed_share)
+
+
+def _off_level(layers: Layers, deviation: float, young: BoolArray) -> float:
+    """How unlikely the viscosity of new lubricant is, -2 ln of it: what is not of the film is of the rest."""
+    if not young.any():
+        return 0.0
+    viscosity, error = (each[young] for each in layers.likeliest_viscosity())
+    return float(np.median(viscosity) ** 2 / (deviation**2 + np.median(error) ** 2))
 
 
 def _some_runs(units: list[str]) -> IntArray:

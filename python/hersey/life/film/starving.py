@@ -14,7 +14,6 @@ from hersey.life.film.shares import StarvesAt
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
-from hersey.life.oil_layer import USUAL_SHARPNESS, log_film_share
 from hersey.result import Record
 from hersey.schema.warning import Warning
 
@@ -91,16 +90,14 @@ class LayersOfSpecimens:
     def film(self, point: Flooded, ages: FloatArray) -> Estimates:
         """Return the film over the flooded one at a point."""
         drawn = self.drawn
-        return self.spread(
-            lambda own, age: log_film_share(drawn.over_flooded(own, age, point), USUAL_SHARPNESS)[0], ages
-        )
+        return self.spread(lambda own, age: drawn.log_share(own, age, point), ages)
 
     def needs(self, point: Flooded, ages: FloatArray) -> FloatArray:
-        """Return the layer that the flooded film at a point needs, m, median of (specimens, ages)."""
+        """Return the layer below which the film starves at a point, m, median of (specimens, ages)."""
         drawn, found = self.drawn, []
         for k, own in enumerate(np.moveaxis(drawn.specimens, 1, 0)):
             since, known = self._since(k, ages)
-            needed = drawn.layer(own, since) - drawn.over_flooded(own, since, point)
+            needed = drawn.layer(own, since) - drawn.over_starved(own, since, point)
             found.append(np.exp(np.median(needed, axis=0)) + known)
         return np.array(found)
 
@@ -111,14 +108,14 @@ class LayersOfSpecimens:
     def _oil(self, k: int, point: Flooded, area: float) -> OilLeft:
         own, ages = self.drawn.specimens[:, k], self._since(k, np.array([0.0, self.last[k]]))[0]
         layer = self.drawn.layer(own, ages)
-        needed = layer - self.drawn.over_flooded(own, ages, point)
+        needed = layer - self.drawn.over_starved(own, ages, point)
         drawn = (layer[:, 0], layer[:, 1], needed[:, 1])
         return OilLeft(self.names[k], *(interval(area * np.exp(each)) for each in drawn))
 
     def rates(self) -> dict[str, Interval]:
-        """Return K (1/(m^2 age)), e and g (1/age) of the median specimen."""
+        """Return K (1/(m^2 age)), p, e and g (1/age) of the median specimen."""
         drawn = self.drawn.rate(self.drawn.mean)
-        return {name: interval(each) for name, each in zip("Keg", drawn, strict=True)}
+        return {name: interval(each) for name, each in drawn.items()}
 
     def starving(self, point: Flooded) -> OwnAges:
         """Return draws of the ages at which these specimens and new ones starve at a point."""
@@ -153,7 +150,7 @@ class LayersOfSpecimens:
         self, own: OwnAges, state: FilmPoint, age_unit: str, warnings: tuple[Warning, ...]
     ) -> AgesAtLimit:
         """Return the ages at which the specimens starve at a point, of their draws."""
-        quantity = f"ratio of flooded film to oil layer at {state.name}"
+        quantity = f"ratio of oil layer needed to oil layer at {state.name}"
         last = dict(zip(self.names, self.last.tolist(), strict=True))
         return ages_at_limit(quantity, age_unit, 1.0, last, own, warnings)
 
@@ -175,12 +172,12 @@ def starves_at(layers: LayersOfSpecimens, point: Flooded, share: float) -> Starv
 
 
 def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
-    """Ages at which layers of draws (..., 6) are first as thin as the flooded film; infinite where never.
+    """Ages at which the film of draws (..., 10) is first starved; infinite where never.
 
     ``off`` is the error of ln of layer over film that all specimens have in common, of each draw.
     """
     ages = _AGES * drawn.greatest_age
-    above = drawn.over_flooded(own, ages, point) + off[..., None]
+    above = drawn.over_starved(own, ages, point) + off[..., None]
     below = above <= 0.0
     first = np.argmax(below, axis=-1)
     before = np.maximum(first - 1, 0)

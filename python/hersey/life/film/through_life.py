@@ -15,7 +15,8 @@ import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.film.depletion_law import Depletion, fit_depletion, pooled
+from hersey.life.film.depletion_draws import fit_depletion, pooled
+from hersey.life.film.depletion_law import Depletion
 from hersey.life.film.of_runs import Estimates, FilmOfRuns, FilmPoint, film_of_runs, systematic_factor
 from hersey.life.film.shares import SHARES, OtherDrag, other_drag, slower_by_share
 from hersey.life.film.starved_drag import film_of
@@ -23,7 +24,7 @@ from hersey.life.film.starving import LayersOfSpecimens, OilLeft, starves_at
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.maintenance import OF_FRICTION
-from hersey.life.oil_layer import USUAL_SHARPNESS
+from hersey.life.oil_layer import BY_THEORY, STARVED
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -36,8 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["STARVED", "Estimates", "FilmLife", "film_life"]
 
-#: Film over flooded below which it is starved: the layer is then thinner than the flooded film.
-STARVED = 2.0 ** (-1.0 / USUAL_SHARPNESS)
 #: Ages of the curves, over the greatest of the data.
 _CURVES = np.linspace(0.0, 2.5, 51)
 
@@ -76,12 +75,13 @@ class FilmLife(Result):
     ]
     layers: Annotated[Estimates, Means("shape (units, ages)", "m")]
     needs: Annotated[
-        tuple[FloatArray, ...], Means("flooded film at each point", "m", shape="(units, ages)", open=True)
+        tuple[FloatArray, ...],
+        Means("layer below which the film starves", "m", shape="(units, ages)", open=True),
     ]
     starves: Annotated[tuple[AgesAtLimit, ...], Means("ages at which the film starves, at each point")]
     law: Annotated[
-        dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age")
-    ]  #: of the median specimen: K (1/(m^2 age)), e and g (1/age)
+        dict[str, Interval], Means("K in 1/(m^2 age), e and g in 1/age, p in 1")
+    ]  #: of the median specimen
     oil: Annotated[tuple[OilLeft, ...], Means("in the layer of each specimen, at the first point")]
     track: float
     other_drag: Annotated[OtherDrag, Means("what does not follow the film")]
@@ -119,7 +119,7 @@ class FilmLife(Result):
         lines += [f"  {point}" for point in self.points]
         for point, ages in zip(self.points, self.starves, strict=True):
             lines.append(
-                f"age ({unit}) at which the layer becomes thinner than the flooded film, {point.name}"
+                f"age ({unit}) at which the film falls below {STARVED:.2f} of a flooded film, {point.name}"
             )
             if all(each.age.value == 0.0 for each in ages.units):
                 lines.append("  all specimens: starved from new")
@@ -128,12 +128,12 @@ class FilmLife(Result):
         lines += self.other_drag.lines(unit, self.points[0].name)
         lines.append(
             f"oil in the layer, mm^3, on a track of {1e3 * self.track:.4g} mm: when new, when last "
-            f"seen, and needed for a flooded film at {self.points[0].name}"
+            f"seen, and needed at {self.points[0].name} so that the film does not starve"
         )
         lines += [f"  {_volumes(each)}" for each in self.oil]
         lines.append(
-            f"fitted law dh/dt = -K h^3/2 - e h with viscosity exp(g t), median specimen, K in "
-            f"1/(m^2 {unit}), e and g in 1/{unit}: "
+            f"fitted law dh/dt = -K h0^2 h (h/h0)^p/2 - e h with viscosity exp(g t), median specimen, K in "
+            f"1/(m^2 {unit}), e and g in 1/{unit}, p by theory {BY_THEORY:g}: "
             + ", ".join(f"{name} {each}" for name, each in self.law.items())
         )
         return lines
