@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -89,18 +89,31 @@ def test_what_runs_have_in_common_is_that_of_least_squares() -> None:
     )
 
 
-def of_unlikely(unlikely: list[float]) -> Any:
+NO_YOUNG = np.zeros(2, dtype=bool)
+
+
+@dataclass(frozen=True)
+class OfShares:
     """A fit of two runs of which each share of other drag is so unlikely."""
-    of_share = dict(zip(SHARES.tolist(), unlikely, strict=True))
-    return SimpleNamespace(
-        together=lambda share: SimpleNamespace(unlikely=of_share[share], common=share),
-        layers=lambda common: SimpleNamespace(best=[common, common]),
-        computed_share=0.04,
-    )
+
+    unlikely: dict[float, float]
+    dwells: Any = field(default_factory=lambda: SimpleNamespace(rows=lambda _: None))
+    computed_share: float = 0.04
+    level: float = 0.1
+
+    def together(self, share: float) -> Any:
+        return SimpleNamespace(unlikely=self.unlikely[share], common=share)
+
+    def layers(self, common: float) -> Any:
+        return SimpleNamespace(best=[common, common])
+
+
+def of_unlikely(unlikely: list[float]) -> Any:
+    return OfShares(dict(zip(SHARES.tolist(), unlikely, strict=True)))
 
 
 def test_shares_that_dwells_do_not_tell_apart_are_even_from_0_to_45_percent() -> None:
-    by = by_share(of_unlikely([3.0] * 4), ["U1", "U2"])
+    by = by_share(of_unlikely([3.0] * 4), ["U1", "U2"], NO_YOUNG)
     assert by.weight == pytest.approx(np.array([0.125, 0.125, 0.10, 0.10]) / 0.45)
     assert [by.quantile(of) for of in (0.05, 0.5, 0.95)] == pytest.approx([0.0225, 0.225, 0.4275])
     drag = other_drag(by, [StarvesAt(0.05, 80.0, 100.0), StarvesAt(0.4, 40.0, 60.0)])
@@ -111,7 +124,7 @@ def test_shares_that_dwells_do_not_tell_apart_are_even_from_0_to_45_percent() ->
 
 def test_a_likelier_share_weighs_more_by_twice_its_squares() -> None:
     """Exp(-unlikely): half of it, times two for runs that err together."""
-    by = by_share(of_unlikely([np.log(2.0), 0.0, 9.0, 9.0]), ["U1", "U2"])
+    by = by_share(of_unlikely([np.log(2.0), 0.0, 9.0, 9.0]), ["U1", "U2"], NO_YOUNG)
     assert by.weight[0] / by.weight[1] == pytest.approx(0.5)
     assert by.likeliest.best == [0.2, 0.2]
     narrow = other_drag(by, [StarvesAt(0.05, 1.0, 60.0), StarvesAt(0.4, 1.0, 100.0)])
