@@ -9,7 +9,7 @@ Usage:
     python -m benchmarks.life_tests slips NAME FIRST COUNT     with one mistake each, and as many without
     python -m benchmarks.life_tests suspects NAME FIRST COUNT  the same by the diagnostics alone: no files
 
-Seeds 0 to 999 are for developing and 2000 to 3999 for developing with mistakes; 1000 to 1199 and 5000 to 5199
+Seeds 0 to 999 are for developing and 2000 to 3999 for developing with mistakes; 1000 to 1199 and 5000 to 5399
 were counted, 4000 to 4499 with mistakes.
 """
 

@@ -67,7 +67,7 @@ class Growth(Result):
     """Growth of an indicator over specimens.
 
     ``weights`` are those of the growth laws and sum to 1. ``parameters`` holds for each law: the value of the
-    median new specimen (``level``), its growth per age (``rate``; the total growth for a saturating law), the
+    median new specimen (``level``), its growth per age (``rate``; the whole growth for a law that ends), the
     spreads between specimens and the scatter of runs (standard deviations of the logarithm), and the shape.
     """
 
@@ -276,12 +276,12 @@ def fit_growth(
     """Fit the growth of a positive indicator over specimens.
 
     Priors, all weak: ln(r T) of the median specimen N(-0.5, 2^2), T being the greatest age (ln s of a
-    saturating law); standard deviations between specimens of ln of level and rate lognormal, of medians 0.1
-    and 0.3 and logarithms that spread by 1.2 and 0.8; scatter of runs half-normal of scale 0.1; ln(tau/T)
-    N(0.3, 1), of a run-in N(-2, 1); c N(0.5, 1); logit q N(-1, 1.5^2); logit p N(1, 1); ln m N(0.3,
-    0.4^2); logit d N(-2, 1); of a sigmoid ln s N(0, 0.7^2), ln m N(0.7, 0.5^2). Growth and no growth are
-    equally probable a priori; the growth laws share their half equally, and then by the square root of
-    their evidence, since none of them is quite true.
+    saturating law and a sigmoid); standard deviations between specimens of ln of level and rate
+    lognormal, of medians 0.1 and 0.3 and logarithms that spread by 1.2 and 0.8; scatter of runs
+    half-normal of scale 0.1; ln(tau/T) N(0.3, 1), of a run-in N(-2, 1), of a sigmoid N(0, 0.7^2), its ln
+    m N(0.7, 0.5^2); c N(0.5, 1); logit q N(-1, 1.5^2); logit p N(1, 1); ln m N(0.3, 0.4^2); logit d N(-2,
+    1). Growth and no growth are equally probable a priori; the growth laws share their half equally, and
+    then by the square root of their evidence, since none of them is quite true.
 
     Parameters
     ----------

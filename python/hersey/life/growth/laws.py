@@ -1,6 +1,6 @@
 """How a positive indicator may grow with age: its logarithm over that of the new specimen, ln G.
 
-Each law has a size x = ln(r T) of its specimen (ln s of a saturating one) and may have a shape that all
+Each law has a size x = ln(r T) of its specimen (ln s of one that ends) and may have a shape that all
 specimens share. Ages are in T, the greatest age of the data. Torque is proportional to 1/h of a layer of oil
 (`oil_layer`). Side flow alone thins it as h = (h0^-2 + K t)^(-1/2); a steady loss, h0 - e t, is the curved
 law at c = -1.
@@ -41,6 +41,7 @@ class Law(NamedTuple):
     shapes: tuple[tuple[str, float, float], ...] = ()  #: name, mean and standard deviation of each prior
     grows: bool = True
     falls_by: Callable[[FloatArray], FloatArray] | None = None  #: how far ln G may fall at first, of shapes
+    ends: bool = False  #: growth ends; its size is the logarithm of the whole growth
 
 
 def _rise(x: FloatArray, t: FloatArray) -> FloatArray:
@@ -142,25 +143,24 @@ def _power_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
     return np.asarray(np.expm1(y) ** np.exp(-a[0]) * np.exp(-x))
 
 
-def _come(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
+def _come(t: FloatArray, a: FloatArray) -> FloatArray:
     """How much has come of a growth that sets in as a power of age and ends."""
-    sooner = _power_of_age(x, t, np.exp(a[1]))
+    sooner = (t * np.exp(-a[0])) ** np.exp(a[1])
     return np.asarray(sooner / (1.0 + sooner))
 
 
 def _sigmoid(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
-    return np.asarray(np.exp(a[0]) * _come(x, t, a))
+    return np.asarray(np.exp(np.minimum(x, _GREATEST)) * _come(t, a))
 
 
 def _sigmoid_sloped(x: FloatArray, t: FloatArray, a: FloatArray) -> tuple[FloatArray, FloatArray]:
-    come, whole = _come(x, t, a), np.exp(a[0])
-    return whole * come, np.exp(a[1]) * whole * come * (1.0 - come)
+    return (_sigmoid(x, t, a),) * 2
 
 
 def _sigmoid_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
-    part = y * np.exp(-a[0])
+    part = y * np.exp(-x)
     held = np.where(part < 1.0, part, 0.0)
-    return np.where(part < 1.0, (held / (1.0 - held)) ** np.exp(-a[1]) * np.exp(-x), np.inf)
+    return np.where(part < 1.0, (held / (1.0 - held)) ** np.exp(-a[1]) * np.exp(a[0]), np.inf)
 
 
 def _run_in(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:
@@ -243,6 +243,7 @@ LAWS = (
         lambda x, t, a: _linear(_rise(x, _full(t, a))),
         _saturating_age,
         (("ln(tau/T)", 0.3, 1.0),),
+        ends=True,
     ),
     Law("curved", "(1 + c r t)^(1/c)", _curved, _curved_sloped, _curved_age, (("c", 0.5, 1.0),)),
     _rested(
@@ -258,11 +259,12 @@ LAWS = (
     Law("power", "1 + (r t)^m", _power, _power_sloped, _power_age, (("ln m", 0.3, 0.4),)),
     Law(
         "sigmoid",
-        "exp(s z / (1 + z)), z = (r t)^m",
+        "exp(s z / (1 + z)), z = (t/tau)^m",
         _sigmoid,
         _sigmoid_sloped,
         _sigmoid_age,
-        (("ln s", 0.0, 0.7), ("ln m", 0.7, 0.5)),
+        (("ln(tau/T)", 0.0, 0.7), ("ln m", 0.7, 0.5)),
+        ends=True,
     ),
     Law(
         "run-in",

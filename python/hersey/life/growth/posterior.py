@@ -56,7 +56,7 @@ def parameters_of(found: Posterior, scale: tuple[float, float]) -> dict[str, Int
     with np.errstate(over="ignore"):  # draws of no weight may be anywhere
         named = {"level": np.exp(shared[:, 0] + scale[1]), "spread of levels": np.exp(shared[:, 1])}
     if law.grows:
-        per_age = 1.0 if law.name == "saturating" else scale[0]
+        per_age = 1.0 if law.ends else scale[0]
         named["rate"] = np.exp(shared[:, 3]) / per_age
         named["spread of rates"] = np.exp(shared[:, 4])
     for i, (name, _, _) in enumerate(law.shapes, 5):
