@@ -19,6 +19,7 @@ from hersey.life.growth import fit as growth_module
 from hersey.life.growth import limit_ages, peaks
 from hersey.life.growth import posterior as growth_posterior
 from hersey.life.growth.fit import Growth, fit_growth
+from hersey.life.growth.law_weights import weights_by
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.limit_ages import ages_of_sum, heavy_tailed, quantiles
 from hersey.life.growth.marginal import Specimens, likelihood
@@ -207,7 +208,7 @@ def test_evidence_counts_by_its_root_among_laws_that_grow() -> None:
         return growth_posterior.Posterior(LAW[law], np.zeros((1, 5)), np.ones(1), evidence, ZERO)
 
     found = [of("constant", 1.0), of("linear", 4.0), of("power", 0.0)]
-    constant, linear, power = growth_module._weights(found, np.array([each.log_evidence for each in found]))
+    constant, linear, power = weights_by(np.array([each.log_evidence for each in found]), found)
     assert linear / power == pytest.approx(math.exp(2.0))
     assert constant / (linear + power) == pytest.approx(math.exp(1.0) / (math.exp(4.0) + 1.0))
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from hersey.arrays import FloatArray, numbers_of, one_thread
 from hersey.errors import ParameterError
 from hersey.life.growth.draws import Draws, draws_of
+from hersey.life.growth.law_weights import evidence_of, selected, weights_by
 from hersey.life.growth.laws import LAWS, Law
 from hersey.life.growth.limit_ages import (
     AgesAtLimit,
@@ -37,14 +37,12 @@ from hersey.units import takes_si
 if TYPE_CHECKING:
     import polars as pl
 
-#: Weight from which a law is named, and that of no growth from which an indicator does not show any.
-NAMED, UNCHANGED = 0.9, 0.5
+#: Weight of no growth from which an indicator does not show any.
+UNCHANGED = 0.5
 #: Draws behind every interval; of many specimens fewer, so many in all, down to the fewest.
 _DRAWS, _IN_ALL, _FEWEST = 2000, 200_000, 400
 #: Specimens that show what all share: more would show it better than any law holds.
 _SHOWING = 100
-#: Power of the evidence of laws that grow, over each other.
-COARSE = 0.5
 #: Level of the upper bound of a rate.
 _AT_MOST = 0.95
 #: Draws, about, behind the middle of a curve.
@@ -321,9 +319,8 @@ def fit_growth(
     random = np.random.default_rng(seed)
     showing = points.spread(_SHOWING)
     found = [posterior(peak, showing, random) for peak in peaks(chosen, showing)]
-    before = dict(zip((law.name for law in chosen), _beforehand(chosen), strict=True))
-    evidence = np.array([each.log_evidence + before[each.law.name] for each in found])
-    weights = _weights(found, evidence)
+    evidence = evidence_of(found, chosen)
+    weights = weights_by(evidence, found)
     by_law = {law.name: 0.0 for law in chosen} | {
         each.law.name: float(w) for each, w in zip(found, weights, strict=True)
     }
@@ -349,30 +346,9 @@ def fit_growth(
         _if_growing=growing,
         _points=points,
         _scale=scale,
-        _selected=_selected(found, evidence),
+        _selected=selected(evidence, found),
         seed=seed,
     )
-
-
-def _weights(found: list[Posterior], evidence: FloatArray) -> FloatArray:
-    """Weights of laws by their evidence; among those that grow, none of which is quite true, by its power.
-
-    Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am.
-    Stat. Assoc. 114 (2019) 1113).
-    """
-    grows = np.array([each.law.grows for each in found])
-    weights = np.exp(evidence - special.logsumexp(evidence))
-    total = weights[grows].sum()
-    coarse = COARSE * evidence[grows]
-    weights[grows] = total * np.exp(coarse - special.logsumexp(coarse)) if total > 0.0 else 0.0
-    return np.asarray(weights)
-
-
-def _selected(found: list[Posterior], evidence: FloatArray) -> str | None:
-    """The law whose evidence leaves no other; None if several fit."""
-    best = int(np.argmax(evidence))
-    share = float(np.exp(evidence[best] - special.logsumexp(evidence)))
-    return found[best].law.name if share >= NAMED else None
 
 
 def _as_if_growing(
@@ -403,9 +379,3 @@ def _chosen(laws: Sequence[str] | None) -> list[Law]:
     if not laws:
         raise ParameterError(f"no growth law is given. Known laws: {', '.join(known)}")
     return [known[name] for name in dict.fromkeys(laws)]
-
-
-def _beforehand(laws: list[Law]) -> FloatArray:
-    """Log prior probabilities of laws, up to a constant."""
-    growing = sum(law.grows for law in laws)
-    return np.array([-math.log(growing) if law.grows else 0.0 for law in laws])
