@@ -29,7 +29,7 @@ def evidence_of(found: Sequence[Posterior], laws: Sequence[Law]) -> FloatArray:
 
 
 def weights_by(evidence: FloatArray, found: Sequence[Posterior]) -> FloatArray:
-    """Return weights of laws by their evidence; of those that grow, none of which is quite true, by its power.
+    """Weights of laws by their evidence; of those that grow, none of which is quite true, by its power.
 
     Evidence of a law that is not true is too sure of itself (coarsened posterior; Miller, Dunson, J. Am.
     Stat. Assoc. 114 (2019) 1113).
