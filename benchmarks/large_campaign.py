@@ -120,7 +120,9 @@ def main() -> None:
     for name, command in commands(asked.file).items():
         if name in asked.only.split(","):
             before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-            subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+            done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+            if done.returncode not in ((0, 1) if name == "check" else (0,)):
+                sys.exit(f"{name} failed with exit code {done.returncode}")
             wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
             used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
             late |= wall > LIMITS[name]

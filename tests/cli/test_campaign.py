@@ -75,7 +75,10 @@ def test_a_specimen_that_is_not_there_is_named_with_those_that_are(folder: Path)
     [
         (["--share", "5 %"], "--share needs the age: add --until '200000 pages'"),
         (["--share", "5", "--until", "900 pages"], "--share is '5': write a percentage, e.g. '2 %'"),
-        (["--share", "0 %", "--until", "900 pages"], "--share is 0 %: it must be above 0 and below 100 %"),
+        (
+            ["--share", "0 %", "--until", "900 pages"],
+            "--share is 0 %: it must be at least 1 % and below 100 %",
+        ),
         (["--cost-of-failure", "1"], "--cost-of-failure is 1: it must be above 1 and at most 100. It is"),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from hersey.errors import ParameterError
 from hersey.life.time_to_failure.decided import _replacement
 from hersey.life.time_to_failure.deciding_run import DecidingRun, loss_after, loss_after_new
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
-from hersey.life.time_to_failure.failing_before import failing_share
+from hersey.life.time_to_failure.failing_before import failing_of_followed, failing_share
 from tests.bare_numbers import bare
 from tests.life.shipped import fewer
 from tests.life.test_time_to_failure import AGE, NAMES, RATE, indicator, linear, of, warned
@@ -183,18 +184,37 @@ def test_fewer_than_four_specimens_answer_nothing_and_say_so() -> None:
     ("asked", "said"),
     [
         ({"share": 0.05}, "share needs the age: add until='200000 pages'"),
-        ({"share": 5.0, "until": 900}, "share is 500 %: it must be above 0 and below 100 %"),
+        ({"share": 5.0, "until": 900}, "share is 500 %: it must be at least 1 % and below 100 %"),
         (
             {"cost_of_failure": 1.0},
             "cost_of_failure is 1: it must be above 1 and at most 100. It is the cost",
         ),
         ({"cost_of_failure": 200.0}, "at most 100, as a life test does not show when the first hundredth"),
+        (
+            {"share": 0.001, "until": 900},
+            "share is 0.1 %: it must be at least 1 % and below 100 %, as a life",
+        ),
+        ({"share": "5 %", "until": 900}, "share is "),
+        ({"cost_of_failure": [2.0, 3.0]}, "cost_of_failure "),
         ({"cost_of_failure": math.nan}, "cost_of_failure is NaN: it must be a number"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(asked: dict[str, Any], said: str) -> None:
     with pytest.raises(ParameterError, match=said.replace(".", r"\.")):
         found(**asked)
+
+
+def test_of_specimens_followed_a_shorter_time_it_is_unknown_how_many_fail() -> None:
+    """One of three was followed to 300, the others to 100: by 200 these two may have failed."""
+    ages = np.tile([1000.0, 1000.0, 1000.0], (20, 1))
+    ending: Any = [SimpleNamespace(ages=ages)]
+    order = np.arange(20)[:, None]
+    at = failing_of_followed(ending, order, 200.0, np.array([300.0, 100.0, 100.0]))
+    assert at is not None
+    assert (at.failed.value, at.failed.low, at.failed.high) == (0.0, 0.0, 2.0)
+    sooner = failing_of_followed(ending, order, 150.0, np.array([300.0, 100.0, 100.0]))
+    assert sooner is not None
+    assert sooner.failed.high == 0.0
 
 
 def test_a_question_that_takes_too_many_says_so() -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+import hersey
 from hersey.life.age import Age
 from hersey.life.diagnostics.compared import Compared
 from hersey.life.diagnostics.diagnosis import Diagnosis, diagnosed
@@ -109,6 +110,12 @@ def test_the_shipped_runs_are_as_they_should_be() -> None:
     found = diagnosed(measured(list(shipped())))
     assert found.warnings == ()
     assert found.excluded == []
+
+
+def test_a_campaign_without_runs_has_no_slip(tmp_path: Path) -> None:
+    with hersey.Campaign.create(tmp_path / "empty.hersey") as campaign:
+        assert campaign.diagnose().slips == ()
+        assert campaign.check().warnings == ()
 
 
 def test_logs_of_two_specimens_exchanged() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import hersey
-from hersey.errors import HerseyError
+from hersey.errors import ChannelError, HerseyError
 from hersey.life.failures.table import read_fleet
 
 
@@ -58,6 +58,15 @@ def test_sheets_of_other_programs(program: str, tmp_path: Path) -> None:
     path = table(tmp_path, SHEETS[program])
     assert ends(path) == [(10, 10, 1), (20, math.inf, 3), (0, 30, 2)]
     assert hersey.read_failures(path).unit == ("hours" if program == "Minitab" else "h")
+
+
+def test_numbers_of_rows_are_no_count_of_specimens(tmp_path: Path) -> None:
+    text = "{},start,time [h],status\n1,5,100,F\n2,5,200,F\n3,5,300,S\n"
+    with pytest.raises(ChannelError, match="column 'n' numbers the rows or counts specimens") as error:
+        ends(table(tmp_path, text.format("n")))
+    assert error.value.remedy == "name it 'id' or 'count'"
+    assert ends(table(tmp_path, text.format("id"))) == [(100, 100, 1), (200, 200, 1), (300, math.inf, 1)]
+    assert ends(table(tmp_path, text.format("count")))[2] == (300, math.inf, 3)
 
 
 def test_own_names_go_before_those_of_other_programs(tmp_path: Path) -> None:

@@ -117,6 +117,16 @@ def test_half_of_the_draws_that_wear_out_decide_nothing() -> None:
     assert none.summary().startswith("No planned replacement before 5000 pages pays, if")
 
 
+@pytest.mark.parametrize(("left", "pays"), [(0.02, "no"), (0.9, "not yet decided")])
+def test_where_most_outlive_the_last_age_running_to_failure_has_no_cost_yet(left: float, pays: str) -> None:
+    ages = places(300.0)
+    falling = np.linspace(3.0, 1.0, ages.size)
+    found = best_replacement(
+        ages, np.tile(falling, (50, 1)), falling, cost_of_failure=10.0, unit="h", until=None, left=left
+    )
+    assert (found.pays, found.age.value) == (pays, math.inf)
+
+
 def test_a_cost_that_cannot_be_asked_for_is_refused() -> None:
     for cost in (1.0, -2.0, 1e6):
         with pytest.raises(

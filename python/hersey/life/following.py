@@ -158,5 +158,6 @@ def _dwells(campaign: Campaign, excluded: Sequence[int]) -> pl.DataFrame:
     """The dwells of a campaign without those of the runs at some places."""
     import polars as pl
 
-    numbers = [Runs.of(campaign).run[place] for place in excluded]
+    runs = Runs.of(campaign).run if excluded else ()
+    numbers = [runs[place] for place in excluded]
     return campaign.dwells().filter(~pl.col("run_id").is_in(numbers))

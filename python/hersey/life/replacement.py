@@ -18,7 +18,7 @@ import numpy as np
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import ParameterError, Setting, sentence
 from hersey.life.failures.draws import Draws, survival_at
-from hersey.life.growth.limit_ages import Interval, rounded
+from hersey.life.growth.limit_ages import Interval, percent, rounded
 from hersey.result import Means, Result
 from hersey.units import takes_si
 
@@ -39,6 +39,8 @@ _FINE, _PART, _FARTHEST = 1200, 1e-7, 1e300
 _SHORTEST = 1e-300
 #: Greatest ratio of costs that is taken.
 _MOST = 1e4
+#: Share of specimens up to which those that outlive the last age do not matter.
+_LEFT = 0.05
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,7 +73,8 @@ class Replacement(Result):
             until = "" if self.until is None else f" before {rounded(self.until)}{of_unit}"
             return f"no planned replacement{until} pays{self._if}"
         if self.pays == "yes":
-            ends = f"{rounded(self.age.low)} to {rounded(self.age.high)}{of_unit}"
+            ends, last = rounded(self.age.low), self.age.high
+            ends += f" to {rounded(last)}{of_unit}" if math.isfinite(last) else f"{of_unit} or later"
             return (
                 f"replace at {rounded(self.age.value)}{of_unit} ({self._level}: {ends}). That costs "
                 f"{_percent(self.saving.value)} less{one} than running to failure ({self._level}: "
@@ -117,7 +120,7 @@ def _one(unit: str) -> str:
 
 
 def _percent(share: float) -> str:
-    return f"{100.0 * share:.2g} %"
+    return percent(share) if share <= 1.0 else f"{100.0 * share:.0f} %"
 
 
 def costs(survived: FloatArray, lived: FloatArray, cost_of_failure: float) -> FloatArray:
@@ -148,6 +151,7 @@ def best_replacement(
     cost_of_failure: float,
     unit: str,
     until: float | None,
+    left: float = 0.0,
     level: float = 0.90,
 ) -> Replacement:
     """Return the age of least cost.
@@ -160,12 +164,14 @@ def best_replacement(
         Cost of each draw, as from `costs`, over that at the last age, shape (draws, ages).
     estimated
         That which decides, shape (ages,).
+    left
+        Share of specimens that outlives the last age. With many, what running to failure costs is unknown.
     """
     tails = [0.5 - level / 2, 0.5 + level / 2]
     own, best = _least(ages, relative), float(_least(ages, estimated[None])[0])
     saved = 1.0 - _at(best, ages, np.vstack([estimated, relative]))
     decided: Literal["yes", "no", "not yet decided"] = "not yet decided"
-    if (own < math.inf).mean() <= tails[0]:
+    if (own < math.inf).mean() <= tails[0] and left <= _LEFT:
         decided, best = "no", math.inf
     elif best <= (math.inf if until is None else until) and (saved[1:] > 0.0).mean() >= tails[1]:
         decided = "yes"

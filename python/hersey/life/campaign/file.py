@@ -308,7 +308,7 @@ class Campaign:
         no-load torque that was subtracted, or 0.
         """
         every: pl.DataFrame = self._unless_changed("dwells", self._dwells)
-        return every
+        return every.clone()  # whoever asks may change it
 
     def _dwells(self) -> pl.DataFrame:
         from hersey.life.campaign.dwells import dwells_of

@@ -79,6 +79,8 @@ class Diagnosis:
 
 def diagnosed(measured: MeasuredRuns) -> Diagnosis:
     """Return the slips of runs."""
+    if not measured.number:
+        return Diagnosis(measured, (), ())
     found = find_slips(measured)
     kinds = {place: slip.kind for slip in reversed(found.slips) for place in slip.runs}
     each = tuple(

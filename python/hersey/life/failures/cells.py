@@ -115,7 +115,9 @@ def _roles(file: str, headings: Sequence[tuple[str, str]]) -> dict[str, int]:
 
     for role, names in NAMES.items():
         look_for(role, names)
-    if at.keys().isdisjoint(AGES):
+    known = {name for name, _ in headings}
+    both = all(known.intersection(_OF_OTHERS[role]) for role in ("low", "high"))
+    if both and at.keys().isdisjoint(AGES):
         look_for("low", _OF_OTHERS["low"])
         look_for("high", _OF_OTHERS["high"])
     if at.keys().isdisjoint(AGES):

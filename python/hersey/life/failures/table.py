@@ -98,22 +98,34 @@ def _refuse_unclear(table: Table, stress: str) -> None:
     if "age" not in at and not {"low", "high"} <= at.keys():
         missing = "age" if "low" not in at and "high" not in at else "low" if "low" not in at else "high"
         raise ChannelError(f"{table.name}: there is no column '{missing}'. {columns}", remedy=remedy)
-    told = table.states
-    if "age" in at and not told and "mode" not in at:
+    states = table.states
+    if "age" in at and not states and "mode" not in at:
         raise ChannelError(
             f"{table.name}: no column says which specimens failed. {columns}",
             remedy=f"add a column 'status' and {_ROWS}",
         )
-    if len(told) > 1:
-        again = table.names[told[-1]]
+    if len(states) > 1:
+        again = table.names[states[-1]]
         raise ChannelError(
             f"{table.name}: column '{again}' says again which specimens failed. {columns}",
             remedy=f"delete column '{again}'",
         )
     _refuse_others(table, columns, stress)
+    _refuse_row_numbers(table, columns)
     if not table.rows:
         raise UnreadableLogError(
             f"{table.name} lists no specimens. Write one line per specimen below the header"
+        )
+
+
+def _refuse_row_numbers(table: Table, columns: str) -> None:
+    """Refuse a column 'n' that may count specimens or rows."""
+    if table.names.get("count", "").casefold() != "n" or len(table.rows) < 2:
+        return
+    if [table.cell(row, "count") for _, row in table.rows] == [str(i + 1) for i in range(len(table.rows))]:
+        raise ChannelError(
+            f"{table.name}: column 'n' numbers the rows or counts specimens. {columns}",
+            remedy="name it 'id' or 'count'",
         )
 
 

@@ -145,8 +145,8 @@ def _power_age(x: FloatArray, y: FloatArray, a: FloatArray) -> FloatArray:
 
 def _come(t: FloatArray, a: FloatArray) -> FloatArray:
     """How much has come of a growth that sets in as a power of age and ends."""
-    sooner = (t * np.exp(-a[0])) ** np.exp(a[1])
-    return np.asarray(sooner / (1.0 + sooner))
+    with np.errstate(divide="ignore"):
+        return np.asarray(special.expit(np.exp(a[1]) * (np.log(t) - a[0])))
 
 
 def _sigmoid(x: FloatArray, t: FloatArray, a: FloatArray) -> FloatArray:

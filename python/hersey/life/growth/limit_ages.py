@@ -218,9 +218,12 @@ class Earliest:
         )
 
     def within_reach(self, last: FloatArray) -> Earliest:
-        """Return those that runs up to the ages ``last`` of the specimens show: up to `SURE` times that."""
+        """Return those that runs up to the ages ``last`` of the specimens show: up to `SURE` times that.
+
+        Of a specimen seen only when new, up to that of all.
+        """
         most = SURE * float(last.max())
-        units = np.minimum(self.units, SURE * last)
+        units = np.minimum(self.units, np.where(last > 0.0, SURE * last, most))
         return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
 
     @classmethod
@@ -262,11 +265,12 @@ def ages_at_limit(
     """
     least = earliest or Earliest.unknown(len(last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
+    greatest = max(last.values())
     known = [
-        age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]))
+        age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]), float(seen) or greatest)
         for i, (name, seen) in enumerate(last.items())
     ]
-    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, max(last.values()))
+    b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, greatest)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 
 

@@ -82,6 +82,7 @@ def _replacement(
         cost_of_failure=cost_of_failure,
         unit=unit,
         until=SURE * followed,
+        left=float(survived[:, -1].mean()),
     )
     loss = relative - relative.min(axis=1, keepdims=True)
     goal = min(found.age.value, end)

@@ -40,7 +40,7 @@ class DecidingRun(Record):
         Literal["share", "replacement"], Means("whether a share fails before an age, or when to replace")
     ]
     units: Annotated[tuple[str, ...], Means("specimens to measure; empty if no run of them helps much")]
-    new: Annotated[int, Means("new specimens to follow instead; 0 with `units`, or if a hundred are too few")]
+    new: Annotated[int, Means("new specimens to follow instead; 0 with `units`, or if fifty are too few")]
     age: Annotated[
         float | None, Means("of the run, or up to which new specimens are followed; null: to failure")
     ]

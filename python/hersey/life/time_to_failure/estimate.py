@@ -299,7 +299,7 @@ def time_to_failure(
     Raises
     ------
     ParameterError, UnitError
-        If ``until`` is no age in the unit of the runs, ``share`` is not between 0 and 1 or comes without
+        If ``until`` is no age in the unit of the runs, ``share`` is not from 0.01 to 1 or comes without
         ``until``, or ``cost_of_failure`` is not above 1 or beyond 100.
     InsufficientDataError
         If no indicator that ends a specimen can be fitted; the message names the reasons.
@@ -343,7 +343,7 @@ def time_to_failure(
         shares=_shares(ending, new) if known else None,
         curve=_curve(first, greatest) if known else None,
         until=asked.until,
-        followed_failing=failing_of_followed(ending, order, asked.until, greatest),
+        followed_failing=failing_of_followed(ending, order, asked.until, np.array(list(last.values()))),
         share_failing=of_new.share,
         replacement=of_new.replacement,
         next_runs=tuple(runs),

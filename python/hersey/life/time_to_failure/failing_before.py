@@ -108,16 +108,19 @@ def failing_share(first: FloatArray, age: float, allowed: float, followed: float
 
 
 def failing_of_followed(
-    ending: Sequence[FittedWay], order: IntArray, age: float | None, followed: float
+    ending: Sequence[FittedWay], order: IntArray, age: float | None, last: FloatArray
 ) -> FollowedFailing | None:
     """Return how many of the specimens followed have failed by an age, by any mode; None without an age.
 
-    ``order`` is as from `joint_order`: what all specimens share is common to a draw.
+    ``order`` is as from `joint_order`: what all specimens share is common to a draw. ``last`` is the age at
+    which each specimen was last seen: it may fail from 1.75 times that on.
     """
     if age is None:
         return None
     first = np.min([each.ages[order[:, m]] for m, each in enumerate(ending)], axis=0)
-    count = interval((first <= min(age, FAR * followed)).sum(axis=1).astype(float))
-    if age > SURE * followed:
-        count = Interval(count.value, count.low, float(first.shape[1]))
+    failed = first <= min(age, FAR * float(last.max()))
+    count, unsure = interval(failed.sum(axis=1).astype(float)), SURE * last < age
+    if unsure.any():
+        most = interval(failed[:, ~unsure].sum(axis=1).astype(float)).high + unsure.sum()
+        count = Interval(count.value, count.low, float(most))
     return FollowedFailing(age, first.shape[1], count)

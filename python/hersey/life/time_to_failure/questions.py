@@ -5,12 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypedDict
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hersey.arrays import numbers_of
 from hersey.errors import ParameterError, Setting, UnitError
 from hersey.life.age import Age
 from hersey.life.replacement import cost_ratio
 
-#: Greatest ratio of costs: beyond, the best age depends on less than a hundredth of the specimens.
-_MOST, _WHY = 100.0, "as a life test does not show when the first hundredth of new specimens fails"
+#: Least share, and greatest ratio of costs: beyond, all depends on less than a hundredth of the specimens.
+_LEAST, _MOST = 0.01, 100.0
+_WHY = "as a life test does not show when the first hundredth of new specimens fails"
 
 
 class Asked(TypedDict, total=False):
@@ -51,21 +56,33 @@ def questions_of(
     Raises
     ------
     ParameterError, UnitError
-        If the age is none greater than 0 in such a unit, the share is not between 0 and 1 or comes without
+        If the age is none greater than 0 in such a unit, the share is not from 0.01 to 1 or comes without
         an age, or the cost is not above 1 or beyond 100.
     """
     age = _age_of(until, unit)
     if share is not None:
-        if not 0.0 < share < 1.0:
+        share = _number("share", share)
+        if not _LEAST <= share < 1.0:
+            reason = f", {_WHY}" if 0.0 < share < _LEAST else ""
             raise ParameterError(
-                f"{Setting('share').to()} is {100 * share:g} %: it must be above 0 and below 100 %",
+                f"{Setting('share').to()} is {100 * share:g} %: it must be at least {100 * _LEAST:g} % and "
+                f"below 100 %{reason}",
                 quantity="share",
             )
         if age is None:
             example = Setting("until").to(f"200000 {unit}".strip())
             raise ParameterError(f"{Setting('share').to()} needs the age: add {example}", quantity="share")
-    cost = None if cost_of_failure is None else cost_ratio(cost_of_failure, _MOST, _WHY)
+    cost = None
+    if cost_of_failure is not None:
+        cost = cost_ratio(_number("cost_of_failure", cost_of_failure), _MOST, _WHY)
     return Questions(age, share, cost)
+
+
+def _number(name: str, given: ArrayLike) -> float:
+    number = np.asarray(numbers_of(name, given))
+    if number.ndim:
+        raise ParameterError(f"{Setting(name).to()} must be one number", quantity=name)
+    return float(number)
 
 
 def _age_of(until: str | float | None, unit: str) -> float | None:
