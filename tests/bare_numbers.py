@@ -35,7 +35,7 @@ TOPICS = re.compile(
     r"exponent|\w\^|slope|^\W*(?:[abc]|c_mixed|c below .*)\b"  # powers
     r"|\bp [=<]|\bC\(|squared|chi-square|AICc|[Cc]orrelat|variables +=|data points +="  # statistics
     r"|friction = |ratio|factor|B/A|B over A|Hersey number|Uncertainty|\u00d7|weight"  # ratios
-    r"|treated as correlated"
+    r"|treated as correlated|of a flooded film"
     r"|^\s*dwells\s"  # a count, its label in front
 )
 _CELL = re.compile(rf"[\[(]?{_NUMBER}(?:,? [\[(]?{_NUMBER}[\])]?)*[\])]?|-|none|x {_NUMBER}.*")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
+from hersey.life.diagnostics.run_compared import RunCompared
 from hersey.schema.part import Part
+from hersey.schema.record import part_of
 from hersey.schema.warning import Warning
 
 
@@ -33,11 +35,16 @@ class CampaignEvent(Part):
     run: int | None = Field(description="run of this age measured after it; null if none was")
 
 
+class ComparedRunPart(part_of(RunCompared)):  # type: ignore[misc]  # made as it runs
+    """A run compared with its specimen and the others; null where there are too few to compare it."""
+
+
 class CampaignPart(Part):
-    """Runs of many units at many ages; null warnings where none were looked for."""
+    """Runs of many units at many ages; null warnings and no ``each`` where runs were not compared."""
 
     file: str
     age_unit: str
     runs: list[CampaignRun]
     events: list[CampaignEvent] = Field(description="maintenance, by specimen and age")
     warnings: list[Warning] | None = None
+    each: list[ComparedRunPart] | None = Field(None, description="runs compared; null where they were not")
