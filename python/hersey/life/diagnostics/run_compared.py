@@ -14,7 +14,7 @@ class RunCompared(Record):
 
     run: int
     unit: str
-    age: float
+    age: Annotated[float, Means("in the unit of all ages")]
     distance: Annotated[
         float | None,
         Means("distance from what the other runs of its specimen show, studentised: 1 is the usual one"),
