@@ -197,7 +197,7 @@ def test_the_power_of_side_flow_is_learned(power: float) -> None:
     place = 0.6 - np.log1p(power * 4.0 * age) / power + 0.02 * random.standard_normal(age.size)
     steps = np.linspace(-6.0, 6.0, 13)
     places, ones = place[:, None] + 0.02 * steps, np.ones((age.size, steps.size))
-    told = Layers(
+    layers = Layers(
         place=places,
         deviance=steps**2 * ones,
         viscosity=0.0 * ones,
@@ -211,7 +211,7 @@ def test_the_power_of_side_flow_is_learned(power: float) -> None:
         reference=reference,
         common=np.zeros(7),
     )
-    drawn = fit_depletion(told, unit, age)
+    drawn = fit_depletion(layers, unit, age)
     assert np.median(drawn.rate(drawn.mean)["p"]) == pytest.approx(power, rel=0.35)
     new = cubic(reference.film, np.zeros(()))[0].item() + 0.6
     layer = np.median(drawn.layer(drawn.specimens, np.array([2.0]))[..., 0] - new, axis=0)

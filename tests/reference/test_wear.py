@@ -1,4 +1,4 @@
-"""Wear tests by others: friction that saturates is said to end, and what cannot be told is not named.
+"""Wear tests by others: friction that saturates is said to end, and what the data leave open is not named.
 
 Polyphenylene sulphide, plain and with 15 to 45 % of PTFE, on a disc at constant speed (pin-on-disc rig of
 `shared/data`, licence MIT). Speed and temperature do not change, so drift in the sense of `fit_drift` has

@@ -17,6 +17,7 @@ import numpy as np
 
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import ParameterError, Setting, sentence
+from hersey.life.age import one_of
 from hersey.life.failures.draws import Draws, survival_at
 from hersey.life.growth.limit_ages import Interval, percent, rounded
 from hersey.result import Means, Result
@@ -68,7 +69,7 @@ class Replacement(Result):
 
     def headline(self) -> str:
         """Return at which age to replace, and what it saves."""
-        of_unit, one = (f" {self.unit}", f" per {_one(self.unit)}") if self.unit else ("", "")
+        of_unit, one = (f" {self.unit}", f" per {one_of(self.unit)}") if self.unit else ("", "")
         if self.pays == "no":
             until = "" if self.until is None else f" before {rounded(self.until)}{of_unit}"
             return f"no planned replacement{until} pays{self._if}"
@@ -111,12 +112,6 @@ class Replacement(Result):
         return pl.DataFrame(
             dict(zip(names, (self.ages, self.cost, self.cost_low, self.cost_high), strict=True))
         )
-
-
-def _one(unit: str) -> str:
-    from hersey.life.age import one_of
-
-    return one_of(unit)
 
 
 def _percent(share: float) -> str:

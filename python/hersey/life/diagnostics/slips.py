@@ -60,7 +60,7 @@ _OF_LAST, _OF_LEVELS = 0.4, 0.15
 #: much more the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
 #: Gain per logarithm by which a small age lies closer to another of its specimen than half of what those of
-#: others do: nobody measures a new specimen twice in so short a time. Later some do. 10 times closer is odd.
+#: others do: nobody measures a new specimen twice in so short a time. Later some do. 10 times is suspect.
 _CROWDED, _CLOSER, _FAR_CLOSER = 3.0, 2.0, 10.0
 #: Share of ages that follow no schedule, and how far those that do lie from it, in the usual gap of two.
 _UNPLANNED, _ABOUT = 0.05, 0.5
