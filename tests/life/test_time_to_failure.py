@@ -407,3 +407,16 @@ def test_ages_by_a_law_of_its_own_stand_in_the_place_of_growth() -> None:
     found = time_to_failure(of(indicator("torque", linear(RATE), 2.0, own_ages=own)))
     assert {each.age.age.value for each in found.units} == {123.0}
     assert found.b50.age.value == 456.0
+
+
+def test_of_a_specimen_seen_only_when_new_no_more_is_shown_than_of_the_others() -> None:
+    names = (*("A",) * 4, *("B",) * 4, "N")
+    age = np.append(np.tile([0.0, 10.0, 20.0, 30.0], 2), 0.0)
+    value = np.append(linear(np.array([0.004, 0.005]), age[:4]), 1.0)
+    found = time_to_failure(of(indicator("torque", value, 2.0), names=names, age=age))
+    new, own = found.units[2], found.modes[0].ages.units[2]
+    assert (new.unit, new.age.last) == ("N", 0.0)
+    assert new.age.age.value > 90.0
+    assert new.age.age.low <= 1.75 * 30.0
+    assert (new.age.age.high, own.age.high) == (math.inf, math.inf)
+    assert own.age.low <= 1.75 * 30.0
