@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,6 +60,12 @@ class AtStates:
     factor: FloatArray
     kelvin: FloatArray
     curves: tuple[Curves, ...] = ()
+
+    def of_states(self, places: Sequence[int]) -> AtStates:
+        """Return the same of some of the states."""
+        names = ("belt", "belt_error", "drive", "drive_error", "outside", "factor", "kelvin")
+        arrays = {name: getattr(self, name)[:, places] for name in names}
+        return replace(self, states=tuple(self.states[place] for place in places), **arrays)
 
     def warnings(self, state: int) -> tuple[Warning, ...]:
         """Return what the state is, and which runs do not show it or only beyond their dwells."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from hersey.schema.warning import Warning
@@ -11,6 +11,9 @@ from hersey.schema.warning import Warning
 if TYPE_CHECKING:
     from hersey.life.indicators.run_dwells import CampaignRuns
     from hersey.machine import Machine
+
+#: Coldest starts that are tried beside the one as it is, K.
+OTHER_STARTS = (-10.0, 10.0)
 
 
 @dataclass(frozen=True)
@@ -72,3 +75,13 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
         State("cold and fast", fastest, coldest, ", ".join(filter(None, (fast_from, cold_from)))),
         State("hot and slow", slowest, hottest, ", ".join(filter(None, (slow_from, hot_from)))),
     )
+
+
+def cold_starts(machine: Machine, runs: CampaignRuns) -> tuple[State, ...]:
+    """Return the cold fast corner at other coldest starts; empty where no run recorded a temperature."""
+    ends = load_cases(machine, runs)
+    if ends is None or (cold := ends[0].temperature) is None:
+        return ()
+    lives = (replace(machine.life, coldest=cold + beside) for beside in OTHER_STARTS)
+    cases = (load_cases(replace(machine, life=life), runs) for life in lives)
+    return tuple(case[0] for case in cases if case is not None)
