@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -170,15 +170,26 @@ def age_at_limit(
     times the age ``followed`` (default: ``last``) at the latest, and has no end where the age is beyond `FAR`
     times that.
     """
-    never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
-    age = interval(ages)
-    if math.isinf(age.value):
-        age = Interval(age.value, min(age.low, earliest), age.high)
     seen = last if followed is None else followed
-    if seen > 0.0:
-        high = math.inf if age.value > FAR * seen else age.high
-        age = Interval(age.value, min(age.low, SURE * seen), high)
-    return AgeAtLimit(name, age, never, last, passed)
+    of_one = (np.array([each]) for each in (last, earliest, seen))
+    return ages_of_each([name], ages[:, None], *of_one)[0]
+
+
+def ages_of_each(
+    names: Iterable[str], ages: FloatArray, last: FloatArray, earliest: FloatArray, followed: FloatArray
+) -> list[AgeAtLimit]:
+    """Return `age_at_limit` of each specimen, ``ages`` being (draws, specimens) and the others (specimens,)."""
+    never, passed = np.isinf(ages).mean(axis=0), (ages <= last).mean(axis=0)
+    low, age, high = quantiles(ages)
+    low = np.where(np.isinf(age), np.minimum(low, earliest), low)
+    seen = followed > 0.0
+    low = np.where(seen, np.minimum(low, SURE * followed), low)
+    high = np.where(seen & (age > FAR * followed), math.inf, high)
+    columns = (each.tolist() for each in (age, low, high, never, last, passed))
+    return [
+        AgeAtLimit(name, Interval(*numbers[:3]), *numbers[3:])
+        for name, *numbers in zip(names, *columns, strict=True)
+    ]
 
 
 def share_of_specimens(
@@ -266,10 +277,8 @@ def ages_at_limit(
     least = earliest or Earliest.unknown(len(last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
     greatest = max(last.values())
-    known = [
-        age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]), float(seen) or greatest)
-        for i, (name, seen) in enumerate(last.items())
-    ]
+    seen = np.array(list(last.values()), dtype=float)
+    known = ages_of_each(last, own.known, seen, least.units, np.where(seen > 0.0, seen, greatest))
     b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, greatest)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 

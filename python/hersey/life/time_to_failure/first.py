@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.growth.limit_ages import AgeAtLimit, age_at_limit
-from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of
+from hersey.life.growth.limit_ages import AgeAtLimit, ages_of_each
+from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of, ranks_of_each
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
 
@@ -93,37 +93,45 @@ class SpecimenEnd(Record):
         return str(self.age) if self.ways == _NONE else f"{self.age} by {self.ways}"
 
 
+class Picks(NamedTuple):
+    """Which draws of each mode stand together, (modes, draws, specimens), and first ages, (draws, specimens)."""
+
+    order: IntArray
+    first: FloatArray
+
+
 def ends_of_specimens(
     ending: Sequence[FittedWay],
     of_runs: FloatArray,
     names: Sequence[str],
     last: dict[str, float],
     random: np.random.Generator,
-) -> tuple[tuple[SpecimenEnd, ...], list[tuple[IntArray, FloatArray]]]:
-    """The first end of each specimen; and which draws of each way stand together, with their first ages."""
-    found, picks = [], []
-    greatest = max(last.values())
-    for i, name in enumerate(names):
-        keys = np.stack([each.ages[:, i] for each in ending], axis=1)
-        own = np.stack([each.order[:, i] for each in ending], axis=1)
-        order = np.take_along_axis(own, ranks_of(len(keys), of_runs, random), axis=0)
-        joint = np.take_along_axis(keys, order, axis=0)
-        first = joint.min(axis=1)
-        shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        least = min(float(each.earliest.units[i]) for each in ending)
-        end = age_at_limit(name, first, last[name], least, last[name] or greatest)
-        middle = {e.mode.name: float(e.medians[i]) for e in ending}
-        near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
-        found.append(SpecimenEnd(name, end, shares, near))
-        picks.append((order, first))
-    return tuple(found), picks
+) -> tuple[tuple[SpecimenEnd, ...], Picks]:
+    """The first end of each specimen, and of which draws it is made."""
+    ranks = ranks_of_each(len(names), len(ending[0].ages), of_runs, random)
+    order = np.stack([np.take_along_axis(e.order, own, axis=0) for e, own in zip(ending, ranks, strict=True)])
+    joint = np.stack([np.take_along_axis(e.ages, own, axis=0) for e, own in zip(ending, order, strict=True)])
+    first = joint.min(axis=0)
+    seen = np.array([last[name] for name in names])
+    least = np.min([each.earliest.units for each in ending], axis=0)
+    ends = ages_of_each(names, first, seen, least, np.where(seen > 0.0, seen, max(last.values())))
+    ways, middle = [each.mode.name for each in ending], np.stack([each.medians for each in ending])
+    found = []
+    for end, shares, ages in zip(ends, _firsts(joint).T.tolist(), middle.T.tolist(), strict=True):
+        own = zip(ways, ages, strict=True)
+        near = tuple(way for way, age in own if age <= NEAR * end.age.value < np.inf)
+        found.append(SpecimenEnd(end.unit, end, dict(zip(ways, shares, strict=True)), near))
+    return tuple(found), Picks(order, first)
 
 
 def _firsts(ages: FloatArray) -> FloatArray:
-    """Share in which each row is the least of all, ties shared; less than 1 in all where none comes."""
+    """Share of draws in which each mode is the least of all, (modes, specimens), ties shared.
+
+    ``ages`` are (modes, draws, specimens); the shares are less than 1 in all where none comes.
+    """
     least = (ages == ages.min(axis=0)) & np.isfinite(ages)
     count = np.maximum(least.sum(axis=0), 1)
-    return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
+    return np.asarray((least / count).mean(axis=1))
 
 
 def joint_order(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> IntArray:
