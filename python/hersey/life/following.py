@@ -147,7 +147,9 @@ def follow(
     others = (
         tried(
             "ages in other operating conditions",
-            lambda: uses_beside(found, asked_runs, machine, indicators, excluded=diagnosis.excluded, seed=seed),
+            lambda: uses_beside(
+                found, asked_runs, machine, indicators, excluded=diagnosis.excluded, seed=seed
+            ),
         )
         if uses
         else None

@@ -98,11 +98,13 @@ class Segments(NamedTuple):
 
     def stretches(self, unit: Sequence[str], age: FloatArray) -> tuple[Stretch, ...]:
         """Return the segments of runs of specimens at ages; none where no maintenance began one."""
+        if np.array_equal(self.age, age):
+            return ()
         found = {
             name: Stretch(name, of, at - since)
             for name, of, at, since in zip(self.name, unit, age.tolist(), self.age.tolist(), strict=True)
         }
-        return tuple(found.values()) if any(each.begun for each in found.values()) else ()
+        return tuple(found.values())
 
 
 def segments(
@@ -130,9 +132,9 @@ def segments(
         if event.kind in kinds and event.unit in begun:
             of_unit.setdefault(event.unit, []).append(event)
             begun[event.unit] = max(begun[event.unit], event.age.value)
-    for i, (number, of, at) in enumerate(zip(run, unit, age.tolist(), strict=True)):
-        own = of_unit.get(of, [])
-        before = [each.age.value for each in own if at > each.age.value or each.run == number]
+    for i in [place for place, of in enumerate(unit) if of in of_unit]:
+        of, at, own = unit[i], float(age[i]), of_unit[unit[i]]
+        before = [each.age.value for each in own if at > each.age.value or each.run == run[i]]
         since[i] = max(before, default=0.0)
         later = [each.age.value for each in own if each.age.value not in before]
         if later:

@@ -17,7 +17,7 @@ from hersey.life.growth.limit_ages import Earliest, Interval, of_population
 from hersey.life.indicators.of_campaign import AskedRuns, asked_of
 from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens, joint_order
 from hersey.life.time_to_failure.joined import correlations
-from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
+from hersey.life.time_to_failure.way import FittedWay, fitted_way
 from hersey.result import Means, Record, Result
 from hersey.units import celsius, takes_si
 
@@ -216,7 +216,7 @@ class _Ways:
             return (), None, None
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
-        units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
+        units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, indicators.runs.last, random)
         order = joint_order(ways, of_runs, random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, order, random)), axis=1)
         least = Earliest.of_first([way.earliest for way in ways])

@@ -178,7 +178,7 @@ def age_at_limit(
 def ages_of_each(
     names: Iterable[str], ages: FloatArray, last: FloatArray, earliest: FloatArray, followed: FloatArray
 ) -> list[AgeAtLimit]:
-    """Return `age_at_limit` of each specimen, ``ages`` being (draws, specimens) and the others (specimens,)."""
+    """Return `age_at_limit` of each specimen; ``ages`` are (draws, specimens), the others (specimens,)."""
     never, passed = np.isinf(ages).mean(axis=0), (ages <= last).mean(axis=0)
     low, age, high = quantiles(ages)
     low = np.where(np.isinf(age), np.minimum(low, earliest), low)

@@ -77,11 +77,9 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
     )
 
 
-def cold_starts(machine: Machine, runs: CampaignRuns) -> tuple[State, ...]:
-    """Return the cold fast corner at other coldest starts; empty where no run recorded a temperature."""
-    ends = load_cases(machine, runs)
-    if ends is None or (cold := ends[0].temperature) is None:
+def cold_starts(cold: State) -> tuple[State, ...]:
+    """Return the cold and fast corner at other coldest starts; empty where no run recorded a temperature."""
+    kelvin = cold.temperature
+    if kelvin is None:
         return ()
-    lives = (replace(machine.life, coldest=cold + beside) for beside in OTHER_STARTS)
-    cases = (load_cases(replace(machine, life=life), runs) for life in lives)
-    return tuple(case[0] for case in cases if case is not None)
+    return tuple(replace(cold, temperature=kelvin + beside) for beside in OTHER_STARTS)

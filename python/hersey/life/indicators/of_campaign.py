@@ -77,8 +77,8 @@ def asked_of(campaign: Campaign, machine: Machine) -> AskedRuns:
     still = State("at rest, hot", stick_speed, hottest, "stick speed")
     states = (*ends, still, *point_states(machine))
     temperatures = tuple(dict.fromkeys(point.temperature for point in machine.points))
-    others = cold_starts(machine, runs)
-    return AskedRuns(at_states(runs, (*states, *others), temperatures, drawn=DRAWN_RUNS), len(states))
+    asked = (*states, *cold_starts(ends[_COLD]))
+    return AskedRuns(at_states(runs, asked, temperatures, drawn=DRAWN_RUNS), len(states))
 
 
 @dataclass(frozen=True, repr=False)
@@ -100,10 +100,8 @@ class AskedRuns:
         colds = {states[k].temperature: k for k in (_COLD, *range(self.number, len(states)))}
         return {kelvin: colds[kelvin] for kelvin in sorted(each for each in colds if each is not None)}
 
-    def indicators(
-        self, machine: Machine, *, coldest: float | None = None, signs: bool = True
-    ) -> Indicators:
-        """Return the indicators of a machine of the same states, from one of `starts` (default: as stated)."""
+    def indicators(self, machine: Machine, *, coldest: float | None = None, signs: bool = True) -> Indicators:
+        """Return the indicators of a machine of the same states, at one of `starts` (default: as stated)."""
         cold = _COLD if coldest is None else self.starts[coldest]
         estimates = self.estimates.of_states([cold, *range(_SLOW, self.number)])
         asked = _Asked(estimates, machine, _torque_gain(machine, estimates.runs))

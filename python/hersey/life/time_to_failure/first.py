@@ -94,10 +94,10 @@ class SpecimenEnd(Record):
 
 
 class Picks(NamedTuple):
-    """Which draws of each mode stand together, (modes, draws, specimens), and first ages, (draws, specimens)."""
+    """Which draws of each mode stand together for a specimen, and the first age in each draw."""
 
-    order: IntArray
-    first: FloatArray
+    order: IntArray  #: (modes, draws, specimens)
+    first: FloatArray  #: (draws, specimens)
 
 
 def ends_of_specimens(
