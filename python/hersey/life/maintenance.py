@@ -7,15 +7,14 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
-import numpy as np
-
-from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.life.age import Age
 from hersey.result import Means, Record
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from hersey.arrays import FloatArray
 
 #: What may be done to a specimen. From each on friction grows anew; damage does so in new parts alone.
 RE_GREASED, CLEANED, REPLACED = "re-greased", "cleaned", "replaced"
@@ -98,7 +97,7 @@ class Segments(NamedTuple):
 
     def stretches(self, unit: Sequence[str], age: FloatArray) -> tuple[Stretch, ...]:
         """Return the segments of runs of specimens at ages; none where no maintenance began one."""
-        if np.array_equal(self.age, age):
+        if not (age - self.age).any():
             return ()
         found = {
             name: Stretch(name, of, at - since)
@@ -125,7 +124,7 @@ def segments(
     kinds
         What begins a segment.
     """
-    names, since = list(unit), np.zeros(age.size)
+    names, since = list(unit), 0.0 * age
     begun = dict.fromkeys(unit, 0.0)
     of_unit: dict[str, list[Event]] = {}
     for event in events:

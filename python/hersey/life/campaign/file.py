@@ -374,7 +374,9 @@ class Campaign:
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        return overview(self.path.name, self.runs(), self.events(), self.age_unit)
+        events, age_unit = self.events(), self.age_unit
+        with sqlite_errors(self.path):
+            return overview(self._database, self.path.name, events, age_unit)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
