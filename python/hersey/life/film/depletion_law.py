@@ -57,10 +57,11 @@ class Depletion:
     def rate(self, own: FloatArray) -> dict[str, FloatArray]:
         """Return K (1/(m^2 age)), p, e and g (1/age) of draws (..., 10)."""
         flows, evaporation = self.rates.of(own)
-        square = np.exp(2.0 * (scale(self.reference) + own[..., LAYER_NEW]))
+        power = self.rates.power(own)
+        square = 2.0 * scale(self.reference) + (2.0 - power) * own[..., LAYER_NEW]
         return {
-            "K": 2.0 * flows / square / self.greatest_age,
-            "p": self.rates.power(own),
+            "K": 2.0 * flows * np.exp(-square) / self.greatest_age,
+            "p": power,
             "e": evaporation / self.greatest_age,
             "g": own[..., THICKENING] / self.greatest_age,
         }
@@ -96,10 +97,10 @@ class Rates:
     evaporation: float | None = None
 
     def of(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the losses of a new layer by side flow and evaporation, 1/T, of what specimens have."""
+        """Return the losses of a layer h by side flow and evaporation, 1/T, of what specimens have."""
         loss = np.exp(np.minimum(own[..., LOSS], 50.0))
         if self.side_flow is not None:
-            flows = 0.5 * self.side_flow * np.exp(2.0 * own[..., LAYER_NEW])
+            flows = np.full_like(loss, 0.5 * self.side_flow)
             return flows, loss if self.evaporation is None else np.full_like(loss, self.evaporation)
         if self.evaporation is not None:
             return loss, np.full_like(loss, self.evaporation)
@@ -117,7 +118,7 @@ class Rates:
         flows, evaporation = self.of(own)
         power = self.power(own)
         new = np.exp(-power * own[..., LAYER_NEW])
-        return log_layer(new, power * flows * new, evaporation, age, power)
+        return log_layer(new, power * flows, evaporation, age, power)
 
     @property
     def free(self) -> IntArray:
