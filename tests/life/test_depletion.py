@@ -19,6 +19,7 @@ from hersey.life.film import layer as layer_module
 from hersey.life.film import starving
 from hersey.life.film.common_to_runs import Common
 from hersey.life.film.depletion_draws import fit_depletion
+from hersey.life.film.depletion_law import Rates, scale
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import LayerFit, Layers, layers
 from hersey.life.film.of_runs import starvation_indicator
@@ -187,19 +188,13 @@ def test_the_layer_follows_its_law() -> None:
     assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
 
 
-@pytest.mark.parametrize("power", [1.0, 2.0])
-def test_the_power_of_side_flow_is_learned(power: float) -> None:
-    """Six layers that thin as (1 + p k t)^(-1/p) with k = 4, and what is left at twice the greatest age."""
+def thinned(place: FloatArray, places: FloatArray, deviance: FloatArray) -> Layers:
+    """Layers of runs whose oil stays as it is, as dwells at the cold corner show them."""
     contact, lubricant = film_of(shipped.machine())
-    reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
-    random, age = np.random.default_rng(4), np.tile(np.linspace(0.0, 1.0, 7), 6)
-    unit = np.repeat(np.arange(6), 7)
-    place = 0.6 - np.log1p(power * 4.0 * age) / power + 0.02 * random.standard_normal(age.size)
-    steps = np.linspace(-6.0, 6.0, 13)
-    places, ones = place[:, None] + 0.02 * steps, np.ones((age.size, steps.size))
-    layers = Layers(
+    ones = np.ones_like(places)
+    return Layers(
         place=places,
-        deviance=steps**2 * ones,
+        deviance=deviance,
         viscosity=0.0 * ones,
         temperature_sensitivity=0.0 * ones,
         viscosity_error=0.01 * ones,
@@ -208,14 +203,56 @@ def test_the_power_of_side_flow_is_learned(power: float) -> None:
         scatter=ones[:, 0],
         freedom=30.0 * ones[:, 0],
         used=45.0 * ones[:, 0],
-        reference=reference,
+        reference=flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]])),
         common=np.zeros(7),
     )
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0])
+def test_the_power_of_side_flow_is_learned(power: float) -> None:
+    """Six layers that thin as (1 + p k t)^(-1/p) with k = 4, and what is left at twice the greatest age."""
+    random, age = np.random.default_rng(4), np.tile(np.linspace(0.0, 1.0, 7), 6)
+    unit = np.repeat(np.arange(6), 7)
+    place = 0.6 - np.log1p(power * 4.0 * age) / power + 0.02 * random.standard_normal(age.size)
+    steps = np.linspace(-6.0, 6.0, 13)
+    layers = thinned(place, place[:, None] + 0.02 * steps, np.tile(steps**2, (age.size, 1)))
     drawn = fit_depletion(layers, unit, age)
     assert np.median(drawn.rate(drawn.mean)["p"]) == pytest.approx(power, rel=0.35)
-    new = cubic(reference.film, np.zeros(()))[0].item() + 0.6
+    new = scale(layers.reference) + 0.6
     layer = np.median(drawn.layer(drawn.specimens, np.array([2.0]))[..., 0] - new, axis=0)
     assert layer == pytest.approx(np.full(6, -np.log1p(power * 8.0) / power), abs=0.2)
+
+
+@pytest.mark.parametrize("seed", [1, 4])
+def test_a_layer_that_was_too_thick_to_be_seen_thins_no_sooner(seed: int) -> None:
+    """Six layers that begin 7 times as thick as the flooded film and thin as 1/(1 + 15 t).
+
+    Runs show a layer only once it is below 1.6 of that film. What was lost before does not matter.
+    """
+    random, age = np.random.default_rng(seed), np.tile(np.linspace(0.0, 1.0, 8), 6)
+    place = np.log(7.0 / (1.0 + 15.0 * age)) + 0.05 * random.standard_normal(age.size)
+    seen, steps = (place < 0.5)[:, None], np.linspace(-6.0, 6.0, 13)
+    places = np.where(seen, place[:, None] + 0.05 * steps, np.linspace(-0.5, 3.0, 13))
+    away = np.where(seen, steps, np.minimum(places - 0.5, 0.0) / 0.1)
+    layers = thinned(np.minimum(place, 3.0), places, away**2)
+    drawn = fit_depletion(layers, np.repeat(np.arange(6), 8), age)
+    layer = drawn.layer(drawn.mean, np.array([3.0]))[:, 0] - scale(layers.reference)
+    low, middle, high = np.quantile(layer, [0.05, 0.5, 0.95])
+    assert low < np.log(7.0 / 46.0) < high
+    assert middle == pytest.approx(np.log(7.0 / 46.0), abs=0.2)
+
+
+def test_the_loss_is_that_of_a_layer_as_thick_as_the_flooded_film() -> None:
+    """Of 1 in all, all or half of it by side flow, whatever the layer was when new."""
+    ages = np.array([0.0, 1.0, 2.0])
+    for new in (0.5, 7.0):
+        flows = np.array([np.log(new), 0.0, 0.0, 0.0, -50.0, 0.0])
+        assert np.exp(-Rates().layer(flows, ages)) == pytest.approx(1.0 / new + ages)
+        both = np.array([np.log(new), 0.0, 0.0, 0.0, 0.0, 0.0])
+        left = np.exp(0.5 * ages) * (1.0 / new + 1.0) - 1.0
+        assert np.exp(-Rates().layer(both, ages)) == pytest.approx(left)
+        assert Rates(side_flow=0.6).of(both) == (pytest.approx(0.3), pytest.approx(1.0))
+        assert Rates(evaporation=0.7).of(both) == (pytest.approx(1.0), pytest.approx(0.7))
 
 
 @pytest.mark.parametrize(("sharpness", "fading"), [(3.0, 0.0), (3.0, 1.0), (1.5, 0.5), (6.5, -0.2)])
