@@ -1,9 +1,12 @@
 """How the layer of oil of specimens thins with age, and how their oil thickens.
 
 The layer thins by side flow and evaporation (`oil_layer`), viscosity grows as ``exp(g t)``. Each specimen
-has its own layer when new, rate of loss then (``K h0^2/2 + e``), viscosity when new, and g. The power of side
-flow and the share of evaporation in the loss belong to all. By theory the power is 2, but where oil comes
-back from beside the track, or grease feeds it, the loss slows down by another.
+has its own layer when new, loss, viscosity when new, and g. The power of side flow and the share of
+evaporation in the loss belong to all. By theory the power is 2, but where oil comes back from beside the
+track, or grease feeds it, the loss slows down by another.
+
+The loss is that of a layer as thick as the flooded film. A thick one is not seen, and thins to that film in
+much the same time whatever it was, so that its loss when new may be anything.
 """
 
 from __future__ import annotations
@@ -17,10 +20,10 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between
 
-#: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss when new times T, ln of the
-#: factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in the
-#: loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading of
-#: starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the
+#: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss of a layer h times T, ln of
+#: the factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in
+#: that loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading
+#: of starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the
 #: flooded film at the reference.
 (
     LAYER_NEW,

@@ -1,8 +1,8 @@
 """The share of the drag that does not follow the film, and what each share makes of the runs.
 
 Rolling, seals and gears add to the torque and hide that the film thins. The more of such drag there is, the
-sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 45 %; the
-dwells narrow that where a share does not describe them.
+sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 45 %, the
+greater the less likely; the dwells narrow that where a share does not describe them.
 """
 
 from __future__ import annotations
