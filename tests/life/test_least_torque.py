@@ -9,7 +9,7 @@ from hersey.life.indicators.least_torque import LeastTorque, alike_in_all, least
 from hersey.life.indicators.shared_kernel import shared_kernel
 from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface
 
-#: Torque falls as 1/w below the least and rises as w^0.4 above: (w/w0)^-1 / 1 + (w/w0)^0.4 / 0.4 is least at w0.
+#: Torque falls as 1/w and rises as w^0.4: (w/w0)^-1 + (w/w0)^0.4 / 0.4 is least at w0.
 LEAST = 1.7
 SPEED = np.geomspace(0.5, 15.0, 9)
 GRID = np.geomspace(0.5, 15.0, 44)
