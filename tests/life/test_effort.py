@@ -16,7 +16,7 @@ from hersey.life.growth import importance, marginal
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.marginal import likelihood
 from hersey.life.growth.points import points_of
-from hersey.life.indicators import load_cases, torque_surface
+from hersey.life.indicators import load_cases, shared_kernel, torque_surface
 from hersey.life.indicators.of_campaign import asked_of
 from hersey.life.other_uses import uses_beside
 from hersey.life.time_to_failure import way
@@ -42,16 +42,16 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(way, "fit_growth", counted)
     monkeypatch.setattr(torque_surface.TorqueSurface, "__init__", interpolated)
-    torque_surface._kernel_of.cache_clear()
+    shared_kernel._kernel_of.cache_clear()
     asked = asked_of(campaign, machine)
     indicators = asked.indicators(machine, signs=False)
     found = hersey.time_to_failure(indicators)
-    once = fits.total()
+    once, asked_once = fits.total(), surfaces[0]
     uses = uses_beside(found, asked, machine, indicators)
     assert set(fits.values()) == {1}
     assert fits.total() - once == 1  # the motor torque of the colder start
-    assert surfaces == [len(indicators.runs.run)]  # of the colder start too
-    assert torque_surface._kernel_of.cache_info().misses == 1
+    assert surfaces == [asked_once]  # of the colder start too
+    assert shared_kernel._kernel_of.cache_info().misses == 1
     (stated,) = (use for use in uses.uses if use.stated)
     assert [each.age for each in stated.ends] == [each.age.age for each in found.units]
 
