@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from hersey.arrays import one_thread
+from hersey.arrays import one_thread, side_by_side
 from hersey.errors import HerseyError, ParameterError
 from hersey.life.growth.limit_ages import Earliest, Interval, of_population
 from hersey.life.indicators.of_campaign import AskedRuns, asked_of
@@ -178,13 +178,16 @@ def uses_beside(
     ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
     if found is not None:
         ways.take(indicators, found)
+    conditions = list(product(starts or (None,), duties))
+    as_it_is = [coldest in (cold, None) and duty == AS_STATED for coldest, duty in conditions]
+    every = [
+        indicators if stated else _in_use(asked, machine, indicators, *each).without_runs(excluded)
+        for each, stated in zip(conditions, as_it_is, strict=True)
+    ]
+    ways.fit(every)
     uses: list[Use] = []
-    total = max(len(limits), 1) * max(len(starts), 1) * len(duties)
-    for coldest, duty in product(starts or (None,), duties):
-        stated = coldest in (cold, None) and duty == AS_STATED
-        here = indicators
-        if not stated:
-            here = _in_use(asked, machine, indicators, coldest, duty).without_runs(excluded)
+    total = max(len(limits), 1) * len(conditions)
+    for (coldest, duty), stated, here in zip(conditions, as_it_is, every, strict=True):
         for torque in limits or (None,):
             ends = ways.ends(here, torque)
             uses.append(Use(torque, coldest, duty, stated and torque == limit, *ends))
@@ -205,6 +208,13 @@ class _Ways:
         """Take the growths of indicators from what was found of them with the same seed."""
         growth = {mode.name: mode.growth for mode in found.modes}
         self._growth |= {_key(each): growth[each.name] for each in indicators.each if each.name in growth}
+
+    def fit(self, uses: Sequence[Indicators]) -> None:
+        """Fit the growths that are not known yet."""
+        new = {_key(each): (here, each) for here in uses for each in _limited(here, None)}
+        unknown = [pair for key, pair in new.items() if key not in self._growth]
+        for _ in side_by_side(lambda pair: self._followed(*pair), unknown):
+            pass
 
     def ends(
         self, indicators: Indicators, torque: float | None

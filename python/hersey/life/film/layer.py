@@ -9,13 +9,12 @@ that film is, viscosity to the power 0.6.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from scipy.special import logit
 
-from hersey.arrays import BoolArray, FloatArray
+from hersey.arrays import BoolArray, FloatArray, side_by_side
 from hersey.damping.distributions import student_quantile
 from hersey.life.film.common_to_runs import FROM_RUN_TO_RUN, Common, Together, fitted_together
 from hersey.life.film.filled_dwells import FilledDwells
@@ -258,12 +257,12 @@ class LayerFit:
         factor = 0.0 if share is None else float(logit(share) - logit(least))
         beforehand = Common.beforehand(self.sensitivity, factor)
         every = max(1, -(-len(self.dwells.given) // _RUNS_FOR_SHARED))
-        searches = list(self._searches(every, beforehand))
+        searches = [self._search(rows, beforehand) for rows in self._blocks(every)]
         return fitted_together(searches, beforehand)
 
     def layers(self, common: Common) -> Layers:
         """Return the layers of all runs, given what is common to them."""
-        parts = [_profiled(each) for each in self._searches(1, common)]
+        parts = list(side_by_side(lambda rows: _profiled(self._search(rows, common)), self._blocks(1)))
         names = [each.name for each in fields(Layers) if each.name not in ("reference", "common")]
         return Layers(
             **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
@@ -271,19 +270,20 @@ class LayerFit:
             common=common.mean,
         )
 
-    def _searches(self, every: int, common: Common) -> Iterator[Search]:
+    def _blocks(self, every: int) -> list[slice]:
         """Every so many of the runs, in blocks."""
         runs, longest = self.dwells.speed.shape
         many = every * max(1, _AT_ONCE // longest)
-        thick = _nominal(self.other)
-        for first in range(0, runs, many):
-            some = self.dwells.rows(slice(first, min(first + many, runs), every))
-            film = self.table.at(some.speed, some.kelvin)
-            if self.asperities is None and self.roughness is not None:
-                some = replace(some, given=_on_film(some.given, film, self.roughness))
-            warm = some.kelvin - self.middle
-            law = StarvedDrag(some.speed, warm, film, self.reference, thick, self.roughness, self.asperities)
-            yield Search(law, some, *_prior(some, common, self.asperities is not None))
+        return [slice(first, min(first + many, runs), every) for first in range(0, runs, many)]
+
+    def _search(self, rows: slice, common: Common) -> Search:
+        some = self.dwells.rows(rows)
+        film = self.table.at(some.speed, some.kelvin)
+        if self.asperities is None and self.roughness is not None:
+            some = replace(some, given=_on_film(some.given, film, self.roughness))
+        warm, thick = some.kelvin - self.middle, _nominal(self.other)
+        law = StarvedDrag(some.speed, warm, film, self.reference, thick, self.roughness, self.asperities)
+        return Search(law, some, *_prior(some, common, self.asperities is not None))
 
 
 def layers(dwells: FilledDwells, machine: Machine, *, speed: float, kelvin: float) -> Layers:

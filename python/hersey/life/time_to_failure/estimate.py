@@ -12,7 +12,6 @@ import numpy as np
 
 from hersey.arrays import FloatArray, one_thread
 from hersey.errors import (
-    HerseyError,
     InsufficientDataError,
     Setting,
     capital,
@@ -40,7 +39,7 @@ from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import NextRun, next_runs
 from hersey.life.time_to_failure.questions import questions_of
 from hersey.life.time_to_failure.unsure import unsure
-from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way
+from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_ways
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -305,16 +304,8 @@ def time_to_failure(
         If no indicator that ends a specimen can be fitted; the message names the reasons.
     """
     asked = questions_of(indicators.runs.age_unit, until, share, cost_of_failure)
-    fitted, warnings = [], list(indicators.warnings)
-    for i, each in enumerate(indicators.each):
-        try:
-            fitted.append(fitted_way(indicators, each, seed + i))
-        except HerseyError as error:
-            warnings.append(
-                Warning(NOT_JUDGED, "{reason}", severity="act", where=each.name, reason=str(error))
-            )
-        if progress:
-            progress(i + 1, len(indicators.each))
+    fitted, not_judged = fitted_ways(indicators, seed, progress)
+    warnings = [*indicators.warnings, *not_judged]
     ending = [each for each in fitted if not each.mode.sign]
     if not ending:
         why = " ".join(_by_reason(warnings)) or "No indicator is given."

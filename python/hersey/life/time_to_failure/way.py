@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import FloatArray, IntArray
-from hersey.errors import InsufficientDataError
+from hersey.arrays import FloatArray, IntArray, side_by_side
+from hersey.errors import HerseyError, InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, Earliest, ages_at_limit
-from hersey.life.indicator import Indicator, Indicators, OwnAges
+from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges
 from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Stretch
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
@@ -143,6 +143,32 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     error = float(np.median(each.error[known_runs]))
     least = Earliest.unknown(len(last)) if grows else earliest
     return FittedWay(mode, own.known, own.new, residuals, row, error, of_runs.begun, least)
+
+
+def fitted_ways(
+    indicators: Indicators, seed: int, progress: Callable[[int, int], None] | None
+) -> tuple[list[FittedWay], list[Warning]]:
+    """Return the growth of each indicator, or a warning that says why there is none.
+
+    ``progress`` is called with indicators done and their total.
+    """
+
+    def fitted(place: int) -> FittedWay | Warning:
+        each = indicators.each[place]
+        try:
+            return fitted_way(indicators, each, seed + place)
+        except HerseyError as error:
+            return Warning(NOT_JUDGED, "{reason}", severity="act", where=each.name, reason=str(error))
+
+    ways, warnings, count = [], [], len(indicators.each)
+    for done, found in enumerate(side_by_side(fitted, range(count)), 1):
+        if isinstance(found, Warning):
+            warnings.append(found)
+        else:
+            ways.append(found)
+        if progress:
+            progress(done, count)
+    return ways, warnings
 
 
 def _without_a_value(specimens: Sequence[str]) -> Warning:
