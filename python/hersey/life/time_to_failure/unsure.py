@@ -69,7 +69,7 @@ def _few_specimens(count: int) -> Warning:
 def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
     """What holds of the ends of some specimens, which each warning names."""
     running = [each for each in units if each.state == "running" and math.isfinite(each.age.age.value)]
-    near = [each for each in running if each.age.age.value <= FAR * each.age.last]
+    near = [each for each in running if not each.age.far]
     wide = [each.unit for each in near if each.age.age.high > _WIDE * max(each.age.age.low, 1e-300)]
     if wide:
         yield Warning(
@@ -79,7 +79,7 @@ def _of_specimens(units: Sequence[SpecimenEnd]) -> Iterator[Warning]:
             specimens=listed(wide),
             factor=_WIDE,
         )
-    far = [each.unit for each in running if each.age.age.value > FAR * each.age.last]
+    far = [each.unit for each in running if each.age.far]
     if far:
         yield Warning(
             "end far off",
