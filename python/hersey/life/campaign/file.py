@@ -13,7 +13,7 @@ from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there
 from hersey.life.campaign.checks import CampaignCheck, check
-from hersey.life.campaign.content import damaged, one_of, refuse_unsound_dwells, refuse_unsound_runs
+from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs, rows_of
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
@@ -251,7 +251,7 @@ class Campaign:
         from hersey.life.campaign.conversion import drive_of
 
         with sqlite_errors(self.path):
-            rows = self._database.execute(f"SELECT id, reduction FROM runs WHERE {one_of('id', runs)}")
+            rows = rows_of(self._database, "SELECT id, reduction FROM runs", "id", runs)
             same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
             found = {}
             for number, reduction in rows:
