@@ -92,7 +92,7 @@ def test_a_state_is_that_of_its_region() -> None:
 
 def test_no_map_is_inverted() -> None:
     """The transition rises with temperature at every age, as that of the truth does."""
-    found = ageing_maps(shipped.opened(8), shipped.machine(), told("U8", 250e3), unit="U8")
+    found = ageing_maps(shipped.opened(8), shipped.machine(), told("U8", 250e3), unit=" U8 ")
     truth = population(*example_drive(), units=8, seed=3)[7]
     for index, age in enumerate(found.ages.tolist()):
         assert (np.diff(found.transition[index]) >= 0.0).all()

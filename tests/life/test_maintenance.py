@@ -239,8 +239,8 @@ def test_two_columns_of_events_are_refused(tmp_path: Path) -> None:
 def test_an_event_of_nothing_is_refused(campaign: Path) -> None:
     run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
     with Campaign.open(campaign / "life.hersey") as opened:
-        with pytest.raises(ParameterError, match="no run is of specimen 'U2'"):
-            opened.add_event("U2", "5 pages", "cleaned")
+        with pytest.raises(ParameterError, match=r"life\.hersey has no specimen 'X2'\. Specimens: U1$"):
+            opened.add_event("X2", "5 pages", "cleaned")
         with pytest.raises(UnitError, match="in h, but the others are in pages"):
             opened.add_event("U1", "5 h", "cleaned")
         with pytest.raises(ParameterError, match="an event names run 1, which is of another specimen or age"):
@@ -253,6 +253,11 @@ def test_spaces_of_a_name_do_not_count(tmp_path: Path) -> None:
         shipped.add(opened, "U 1", 0.0, [(1.0, 0.1, 0.001, 400.0)])
         added = opened.add_event(" U  1 ", "5 pages", "cleaned")
         assert opened.events() == [added] == [Event("U 1", Age(5.0, "pages"), "cleaned", None)]
+        for name in (" U  1 ", "U 1"):
+            assert opened.runs(name)["unit"].to_list() == ["U 1"]
+            assert [each["unit"] for each in opened.to_dict(name)["events"]] == ["U 1"]
+        with pytest.raises(ParameterError, match=r"has no specimen '  '\. Specimens: U 1$"):
+            opened.runs("  ")
         opened.remove_event(" U  1 ", "5 pages", "cleaned")
         assert opened.events() == []
 

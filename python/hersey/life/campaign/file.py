@@ -188,7 +188,7 @@ class Campaign:
         """
         parsed, kind = Age.parse(age) if isinstance(age, str) else age, kind_of(event)
         with transaction(self._database, self.path):
-            added = add_event(self._database, unit, parsed, kind, run)
+            added = add_event(self._database, self.path, unit, parsed, kind, run)
             refuse_unsound_runs(self._database, self.path)
             return added
 
@@ -383,12 +383,12 @@ class Campaign:
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
+        runs = self.runs(unit).to_dicts()
         events = [
             {"unit": each.unit, "age": each.age.value, "kind": each.kind, "run": each.run}
             for each in self.events()
-            if unit in ("", each.unit)
+            if not unit or each.unit == runs[0]["unit"]
         ]
-        runs = self.runs(unit).to_dicts()
         return {"file": str(self.path), "age_unit": self.age_unit, "runs": runs, "events": events}
 
     def to_frame(self) -> pl.DataFrame:
