@@ -179,7 +179,7 @@ def test_fewer_than_four_specimens_answer_nothing_and_say_so() -> None:
     )
     assert (asked.share_failing, asked.replacement, asked.deciding_runs) == (None, None, ())
     assert warned(asked)["share unknown"].sentence == (
-        "Whether at most 5 % of new specimens fail before that age cannot be determined from 3 specimens. "
+        "Whether at most 5 % of new specimens fail before 900 pages cannot be determined from 3 specimens. "
         "Follow four specimens or more."
     )
     assert warned(asked)["replacement age unknown"].values == {"specimens": 3}
