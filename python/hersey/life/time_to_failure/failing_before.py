@@ -42,7 +42,7 @@ class ShareFailing(Record):
         Literal["yes", "no", "not yet decided"], Means("whether at most the allowed share fails")
     ]
     shown: Annotated[
-        float, Means("age before which runs can show that few fail: 1.75 times the age followed")
+        float, Means(f"age before which runs can show that few fail: {SURE:g} times the age followed")
     ]
 
     def words(self, age_unit: str) -> str:
@@ -107,7 +107,7 @@ def failing_share(first: FloatArray, age: float, allowed: float, followed: float
     first
         Draws of the ages of first failure of new specimens, (draws, specimens).
     followed
-        Greatest age of the runs: what fails beyond 1.75 times that may be more, beyond 3 times that unknown.
+        Greatest age of the runs: what fails beyond `SURE` times that may be more, beyond `FAR` times unknown.
     """
     shown = SURE * followed
     drawn = (first <= min(age, FAR * followed)).mean(axis=1)
