@@ -71,7 +71,7 @@ def test_a_known_truth_is_found(name: str, reach: float) -> None:
     assert sum(held) >= 5
     for each, t in zip(told, true, strict=True):
         assert each.age.value == pytest.approx(t, rel=0.12)
-        assert each.age.high - each.age.low < 0.5 * t
+        assert each.age.high - each.age.low < 0.65 * t
         assert each.never < 0.05
 
 
@@ -103,7 +103,6 @@ def test_what_does_not_grow_is_told_not_to() -> None:
 
 def test_exact_lines_through_few_points_are_followed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without scatter the age is that of the formula, whatever the priors."""
-    monkeypatch.setattr(limit_ages, "SOONER", 0.0)
     monkeypatch.setattr(limit_ages, "BEYOND", 0.0)
     monkeypatch.setattr(limit_ages, "OWN_BEYOND", 0.0)
     unit = [name for name in "ABCDEF" for _ in range(4)]

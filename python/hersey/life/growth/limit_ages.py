@@ -25,9 +25,8 @@ CONFIDENCE = 0.9
 #: Standard deviations of a normal distribution in half of such an interval.
 DEVIATIONS = 1.645
 #: A law is fitted up to the last run, and growth may depart from it later: what the law does at age t comes
-#: at last (t / last)^k. Mean of ln k, below 0 as what sets in later adds to growth, and its standard
-#: deviations in common to all specimens and of each alone.
-SOONER, BEYOND, OWN_BEYOND = -0.05, 0.12, 0.12
+#: at last (t / last)^k. Standard deviations of ln k in common to all specimens and of each alone.
+BEYOND, OWN_BEYOND = 0.15, 0.12
 #: Share of draws from which it is worth a word that they do not reach a limit.
 _SAID = 0.05
 #: Probability of having failed from which a specimen has failed, and up to which it is still running.
@@ -356,7 +355,7 @@ def beyond(random: np.random.Generator, draws: int, *widths: int) -> tuple[Float
     One array of equally probable draws for each of ``widths``: numbers of specimens. Part of a row is in
     common to it, over all arrays.
     """
-    common = SOONER + BEYOND * heavy_tailed(random, (draws, 1))
+    common = BEYOND * heavy_tailed(random, (draws, 1))
     return tuple(np.exp(common + OWN_BEYOND * heavy_tailed(random, (draws, each))) for each in widths)
 
 
