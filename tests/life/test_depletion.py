@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import re
 from dataclasses import replace
 from typing import Any
@@ -12,13 +11,11 @@ import polars as pl
 import pytest
 from scipy.special import logit
 
-from hersey import _core
-from hersey.arrays import FloatArray, pointwise
+from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film import layer as layer_module
-from hersey.life.film import starving
+from hersey.life.film import starved_drag, starving
 from hersey.life.film.common_to_runs import Common
-from hersey.life.film.depletion_draws import fit_depletion
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
 from hersey.life.film.layer import LayerFit, Layers, layers
 from hersey.life.film.of_runs import starvation_indicator
@@ -40,12 +37,6 @@ from hersey.life.film.through_life import film_life
 from hersey.life.indicator import Indicators, Runs
 from hersey.life.oil_layer import (
     STARVED,
-    USUAL_SHARPNESS,
-    age_of_layer,
-    log_fading_share,
-    log_film_share,
-    log_layer,
-    log_share_between,
     starved_layer,
 )
 from hersey.lubrication.film import film_thickness
@@ -163,95 +154,6 @@ def test_a_wrong_viscosity_of_the_file_is_not_starvation() -> None:
     assert level[0] - level[1] == pytest.approx(-np.log(1.2), abs=0.06)
 
 
-def test_the_layer_follows_its_law() -> None:
-    new, side_flow, evaporation = np.array(0.25), np.array(0.3), np.array(0.7)
-    ages = np.array([0.0, 0.5, 1.0, 2.0])
-    layer = np.exp(log_layer(new, side_flow, evaporation, ages))
-    assert layer[0] == pytest.approx(2.0)
-    for age, here in zip(ages[1:], layer[1:], strict=True):
-        near = np.exp(log_layer(new, side_flow, evaporation, np.array([age - 1e-5, age + 1e-5])))
-        assert (near[1] - near[0]) / 2e-5 == pytest.approx(-0.15 * here**3 - 0.7 * here, rel=1e-6)
-    assert age_of_layer(new, side_flow, evaporation, np.log(layer)) == pytest.approx(ages)
-    for power in (0.5, 2.8):
-        slowed = np.exp(log_layer(np.exp(-power * np.log(2.0)), side_flow, evaporation, ages, power))
-        near = np.exp(
-            log_layer(2.0**-power, side_flow, evaporation, np.array([1.0 - 1e-5, 1.0 + 1e-5]), power)
-        )
-        loss = 0.3 / power * slowed[2] ** (power + 1.0) + 0.7 * slowed[2]
-        assert slowed[0] == pytest.approx(2.0)
-        assert (near[0] - near[1]) / 2e-5 == pytest.approx(loss, rel=1e-6)
-    nothing = np.zeros(())
-    alone = np.exp(log_layer(new, side_flow, nothing, ages))
-    assert alone == pytest.approx((0.25 + 0.3 * ages) ** -0.5)
-    steady = np.exp(log_layer(new, nothing, evaporation, ages))
-    assert steady == pytest.approx(2.0 * np.exp(-0.7 * ages))
-
-
-@pytest.mark.parametrize("power", [1.0, 2.0])
-def test_the_power_of_side_flow_is_learned(power: float) -> None:
-    """Six layers that thin as (1 + p k t)^(-1/p) with k = 4, and what is left at twice the greatest age."""
-    contact, lubricant = film_of(shipped.machine())
-    reference = flooded(contact, lubricant, np.array([[COLD[0]]]), np.array([[COLD[1]]]))
-    random, age = np.random.default_rng(4), np.tile(np.linspace(0.0, 1.0, 7), 6)
-    unit = np.repeat(np.arange(6), 7)
-    place = 0.6 - np.log1p(power * 4.0 * age) / power + 0.02 * random.standard_normal(age.size)
-    steps = np.linspace(-6.0, 6.0, 13)
-    places, ones = place[:, None] + 0.02 * steps, np.ones((age.size, steps.size))
-    layers = Layers(
-        place=places,
-        deviance=steps**2 * ones,
-        viscosity=0.0 * ones,
-        temperature_sensitivity=0.0 * ones,
-        viscosity_error=0.01 * ones,
-        temperature_sensitivity_error=0.01 * ones,
-        best=place,
-        scatter=ones[:, 0],
-        freedom=30.0 * ones[:, 0],
-        used=45.0 * ones[:, 0],
-        reference=reference,
-        common=np.zeros(7),
-    )
-    drawn = fit_depletion(layers, unit, age)
-    assert np.median(drawn.rate(drawn.mean)["p"]) == pytest.approx(power, rel=0.35)
-    new = cubic(reference.film, np.zeros(()))[0].item() + 0.6
-    layer = np.median(drawn.layer(drawn.specimens, np.array([2.0]))[..., 0] - new, axis=0)
-    assert layer == pytest.approx(np.full(6, -np.log1p(power * 8.0) / power), abs=0.2)
-
-
-@pytest.mark.parametrize(("sharpness", "fading"), [(3.0, 0.0), (3.0, 1.0), (1.5, 0.5), (6.5, -0.2)])
-def test_the_layer_at_which_a_film_starves(sharpness: float, fading: float) -> None:
-    at = starved_layer(sharpness, fading)
-    assert np.exp(log_share_between(at, sharpness, fading)[0]) == pytest.approx(STARVED)
-    if sharpness == USUAL_SHARPNESS:
-        assert at == pytest.approx(0.0, abs=1e-12)
-
-
-@pytest.mark.parametrize("sharpness", [2.0, USUAL_SHARPNESS, 5.0])
-def test_the_share_of_the_film_is_that_of_the_core(sharpness: float) -> None:
-    ratio = np.geomspace(1e-3, 1e3, 25)
-    share, slope = log_film_share(np.log(ratio), sharpness)
-    of_core = pointwise(_core.starvation, ratio, 1.0, sharpness).factor
-    assert np.exp(share) == pytest.approx(np.asarray(of_core), rel=1e-12)
-    up, down = (log_film_share(np.log(ratio) + step, sharpness)[0] for step in (1e-5, -1e-5))
-    assert slope == pytest.approx((up - down) / 2e-5, abs=1e-9)
-
-
-@pytest.mark.parametrize("sharpness", [2.0, 3.0, 5.0])
-def test_both_laws_of_starvation_agree_where_the_layer_is_the_film(sharpness: float) -> None:
-    place = np.linspace(-3.0, 3.0, 13)
-    share, slope = log_fading_share(place, sharpness)
-    above, below = (log_fading_share(place + step, sharpness)[0] for step in (1e-6, -1e-6))
-    assert slope == pytest.approx((above - below) / 2e-6, abs=1e-8)
-    assert share[6] == pytest.approx(log_film_share(place, sharpness)[0][6])
-    assert share[0] == pytest.approx(place[0], abs=0.05)
-    assert share[-1] == pytest.approx(0.0, abs=1e-6)
-
-
-def test_the_usual_sharpness_is_that_of_the_film() -> None:
-    usual = inspect.signature(film_thickness).parameters["starvation_sharpness"].default
-    assert usual == USUAL_SHARPNESS
-
-
 def test_the_shipped_units_starve_when_they_do() -> None:
     film = shipped.film()
     misses = 0
@@ -306,8 +208,8 @@ def test_more_drag_beside_the_film_means_that_specimens_starve_sooner() -> None:
     assert film.to_dict()["other_drag"]["starves"][3]["median"] == ages[3]
 
 
-def test_the_share_is_learned_where_the_dwells_show_it() -> None:
-    """Dwells of a drive 40 % of whose drag goes with seals, which no film takes away."""
+def fitted(share: float, **common: float) -> tuple[LayerFit, FloatArray]:
+    """Dwells of six runs of a drive a share of whose drag does not follow the film, and their layers."""
     machine, _ = example_drive()
     speed, kelvin = (np.tile(each, (6, 1)) for each in grid())
     given = np.ones(speed.shape, dtype=bool)
@@ -316,16 +218,32 @@ def test_the_share_is_learned_where_the_dwells_show_it() -> None:
     (search,) = fit._searches(1, Common.beforehand(0.1, 0.0))
     free = search.start(0.0)
     free[:, LAYER] = np.linspace(-2.0, 1.0, 6)
-    free[:, ROLLING] = logit(0.4) - logit(fit.computed_share)
-    free[:, ROLLING_BY_SHARE] = 0.5
+    free[:, ROLLING] = logit(share) - logit(fit.computed_share)
     free[:, CONSTANT] = 0.1
+    for name, value in common.items():
+        free[:, getattr(starved_drag, name)] = value
     torque = search.drag.torque(free)[0]
-    dwells = replace(bare, torque=torque, error=0.01 * torque)
-    fit, names, young = replace(fit, dwells=dwells), [f"U{k}" for k in range(6)], np.ones(6, dtype=bool)
+    return replace(fit, dwells=replace(bare, torque=torque, error=0.01 * torque)), free[:, LAYER]
+
+
+def test_a_film_that_starves_all_at_once_is_told() -> None:
+    """All the oil before a wide nip passes: g = 12, far from the usual 3."""
+    fit, layer = fitted(0.2, SHARPNESS=np.log(4.0), FADING=0.0)
+    precise = replace(fit, dwells=replace(fit.dwells, error=0.003 * fit.dwells.torque))
+    found = precise.layers(precise.together(0.2).common)
+    assert 7.0 < found.sharpness < 13.0
+    assert found.starved_at == pytest.approx(starved_layer(12.0, 0.0), abs=0.03)
+    assert found.best[:4] == pytest.approx(layer[:4], abs=0.15)
+
+
+def test_the_share_is_learned_where_the_dwells_show_it() -> None:
+    """Dwells of a drive 40 % of whose drag goes with seals, which no film takes away."""
+    fit, layer = fitted(0.4, ROLLING_BY_SHARE=0.5)
+    names, young = [f"U{k}" for k in range(6)], np.ones(6, dtype=bool)
     found = by_share(fit, names, young)
     assert int(np.argmax(found.weight)) == 3
     assert found.weight[0] < 0.02
-    assert found.likeliest.best[:5] == pytest.approx(free[:5, LAYER], abs=0.05)
+    assert found.likeliest.best[:5] == pytest.approx(layer[:5], abs=0.05)
     # New lubricant as on its data sheet makes a share less likely that needs another.
     aged = by_share(fit, names, ~young)
     off = [np.median(each.likeliest_viscosity()[0]) for each in found.layers]

@@ -16,7 +16,7 @@ from hersey.life.growth import importance, marginal
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.marginal import likelihood
 from hersey.life.growth.points import points_of
-from hersey.life.indicators import torque_surface
+from hersey.life.indicators import shared_kernel
 from hersey.life.other_uses import uses_beside
 from hersey.life.time_to_failure import way
 from tests.life import shipped
@@ -35,14 +35,14 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
         return fit(unit, age, value, *more, **named)
 
     monkeypatch.setattr(way, "fit_growth", counted)
-    torque_surface._kernel_of.cache_clear()
+    shared_kernel._kernel_of.cache_clear()
     indicators = hersey.indicators_of(campaign, machine, signs=False)
     found = hersey.time_to_failure(indicators)
     once = fits.total()
     uses = uses_beside(found, campaign, machine, indicators)
     assert set(fits.values()) == {1}
     assert fits.total() - once == 1  # the motor torque of the colder start
-    assert torque_surface._kernel_of.cache_info().misses == 1  # of the colder start too
+    assert shared_kernel._kernel_of.cache_info().misses == 1  # of the colder start too
     (stated,) = (use for use in uses.uses if use.stated)
     assert [each.age for each in stated.ends] == [each.age.age for each in found.units]
 

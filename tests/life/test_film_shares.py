@@ -112,20 +112,22 @@ def of_unlikely(unlikely: list[float]) -> Any:
     return OfShares(dict(zip(SHARES.tolist(), unlikely, strict=True)))
 
 
-def test_shares_that_dwells_do_not_tell_apart_are_even_from_0_to_45_percent() -> None:
+def test_shares_that_dwells_do_not_tell_apart_fall_from_0_to_45_percent_by_half() -> None:
+    """Their density is 1 - s/0.9, and even between the ends of what each share stands for."""
     by = by_share(of_unlikely([3.0] * 4), ["U1", "U2"], NO_YOUNG)
-    assert by.weight == pytest.approx(np.array([0.125, 0.125, 0.10, 0.10]) / 0.45)
-    assert [by.quantile(of) for of in (0.05, 0.5, 0.95)] == pytest.approx([0.0225, 0.225, 0.4275])
+    assert by.weight == pytest.approx(np.array([67.0, 57.0, 38.4, 32.0]) / 194.4)
+    ends = [0.125 * 9.72 / 67.0, 0.125 + 0.125 * 30.2 / 57.0, 0.35 + 0.1 * (32.0 - 9.72) / 32.0]
+    assert [by.quantile(of) for of in (0.05, 0.5, 0.95)] == pytest.approx(ends)
     drag = other_drag(by, [StarvesAt(0.05, 80.0, 100.0), StarvesAt(0.4, 40.0, 60.0)])
-    assert (drag.share, drag.low, drag.high, drag.computed) == pytest.approx((0.225, 0.0225, 0.4275, 0.04))
+    assert (drag.low, drag.share, drag.high, drag.computed) == pytest.approx((*ends, 0.04))
     assert drag.sooner
     assert not drag.determined
 
 
-def test_a_likelier_share_weighs_more_by_twice_its_squares() -> None:
-    """Exp(-unlikely): half of it, times two for runs that err together."""
-    by = by_share(of_unlikely([np.log(2.0), 0.0, 9.0, 9.0]), ["U1", "U2"], NO_YOUNG)
-    assert by.weight[0] / by.weight[1] == pytest.approx(0.5)
+def test_a_likelier_share_weighs_more_by_the_squares_of_one_run() -> None:
+    """Half of them in the exponent, times what is known beforehand."""
+    by = by_share(of_unlikely([np.log(4.0), 0.0, 9.0, 9.0]), ["U1", "U2"], NO_YOUNG)
+    assert by.weight[0] / by.weight[1] == pytest.approx(0.5 * 67.0 / 57.0)
     assert by.likeliest.best == [0.2, 0.2]
     narrow = other_drag(by, [StarvesAt(0.05, 1.0, 60.0), StarvesAt(0.4, 1.0, 100.0)])
     assert narrow.determined

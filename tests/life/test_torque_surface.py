@@ -10,7 +10,8 @@ import pytest
 
 from hersey.arrays import FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
-from hersey.life.indicators.torque_surface import Kernel, RunDwells, TorqueSurface, shared_kernel
+from hersey.life.indicators.shared_kernel import shared_kernel
+from hersey.life.indicators.torque_surface import Kernel, RunDwells, TorqueSurface
 from hersey.testbench import population
 from hersey.testbench.ageing import AgedTruth
 from hersey.testbench.campaign import STAND
@@ -88,13 +89,13 @@ def test_draws_of_a_curve_are_those_of_its_points() -> None:
     _, runs, kernel = aged()
     surface = TorqueSurface(runs[0], kernel)
     speed = np.geomspace(0.5, 20.0, 30)
-    median, drawn = surface.curve(speed, 420.0, draws=400, seed=1)
+    median, drawn = surface.curve(speed, 420.0), surface.drawn(speed, 420.0, draws=400, seed=1)
     found = surface.at(speed, np.full(30, 420.0))
     assert median == pytest.approx(found.torque)
     logs = np.log(drawn)
     assert logs.std(axis=0) == pytest.approx(found.error, rel=0.15)
     assert np.abs(np.corrcoef(logs[:, 14], logs[:, 15])[0, 1]) > 0.9  # neighbours go together
-    assert np.array_equal(drawn, surface.curve(speed, 420.0, draws=400, seed=1)[1])
+    assert np.array_equal(drawn, surface.drawn(speed, 420.0, draws=400, seed=1))
 
 
 def power_law(speed: FloatArray, heat: FloatArray, seed: int, error: float = 0.01) -> RunDwells:
@@ -119,7 +120,7 @@ def test_one_temperature_or_none(temperature: float) -> None:
         else:
             assert np.isnan(surface.at(np.array([3.3]), np.array([500.0])).torque[0])
             with pytest.raises(ParameterError, match="other temperatures"):
-                surface.curve(speed, 500.0, 2, 0)
+                surface.curve(speed, 500.0)
     assert np.all(np.abs(errors) < 4.0)
     assert np.sqrt(np.mean(np.square(errors))) < 2.0
 

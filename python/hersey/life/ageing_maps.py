@@ -21,7 +21,8 @@ from hersey.life.age import Age
 from hersey.life.campaign.adding import as_kept
 from hersey.life.growth.limit_ages import rounded
 from hersey.life.indicators.run_dwells import read_runs_of
-from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface, shared_kernel
+from hersey.life.indicators.shared_kernel import shared_kernel
+from hersey.life.indicators.torque_surface import RunDwells, TorqueSurface
 from hersey.life.map_edges import edges_of, measured_at, moved_edges
 from hersey.machine.limits import OperatingPoint
 from hersey.result import Means, Result

@@ -28,7 +28,7 @@ from hersey.life.film.starved_drag import (
 #: powers of flooded film and of the share that is left on the other drag, the power of the film in shear less
 #: 1, and how far starvation is by the law that fades.
 _BEFOREHAND = {
-    SHARPNESS: (0.0, 0.35),
+    SHARPNESS: (0.0, 0.5),
     ROLLING_BY_FLOODED: (-0.2, 0.3),
     ROLLING_BY_SHARE: (1.7, 1.2),
     FILM_POWER: (0.0, 0.05),

@@ -30,7 +30,7 @@ _NUMBERS = SENSITIVITY
 #: Means over specimens, beforehand: mean and standard deviation; spreads over specimens: scale of a
 #: half-normal.
 _MEAN = np.array([0.0, -0.5, 0.0, 0.2, 0.0, np.log(BY_THEORY)])
-_MEAN_DEVIATION = np.array([2.0, 1.5, 1.0, 0.7, 2.5, 0.7])
+_MEAN_DEVIATION = np.array([2.0, 2.0, 1.0, 0.7, 2.5, 0.7])
 _SPREAD = np.array([0.5, 0.7, 0.2, 0.5, 0.0, 0.0])
 #: Scatter of layer and viscosity of runs about the law, beyond their own errors (ln).
 _SCATTER = 0.02

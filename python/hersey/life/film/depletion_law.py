@@ -1,9 +1,12 @@
 """How the layer of oil of specimens thins with age, and how their oil thickens.
 
 The layer thins by side flow and evaporation (`oil_layer`), viscosity grows as ``exp(g t)``. Each specimen
-has its own layer when new, rate of loss then (``K h0^2/2 + e``), viscosity when new, and g. The power of side
-flow and the share of evaporation in the loss belong to all. By theory the power is 2, but where oil comes
-back from beside the track, or grease feeds it, the loss slows down by another.
+has its own layer when new, loss, viscosity when new, and g. The power of side flow and the share of
+evaporation in the loss belong to all. By theory the power is 2, but where oil comes back from beside the
+track, or grease feeds it, the loss slows down by another.
+
+The loss is that of a layer as thick as the flooded film. A thick one is not seen, and thins to that film in
+much the same time whatever it was, so that its loss when new may be anything.
 """
 
 from __future__ import annotations
@@ -17,10 +20,10 @@ from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.oil_layer import BY_THEORY, log_layer, log_share_between
 
-#: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss when new times T, ln of the
-#: factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in the
-#: loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading of
-#: starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the
+#: What a specimen has of its own, in this order: ln(h0/h), ln of the rate of loss of a layer h times T, ln of
+#: the factor on viscosity when new, g T; and what all have in common: logit of the share of evaporation in
+#: that loss, ln of the power of side flow, the change of ln viscosity from hot to cold, sharpness and fading
+#: of starvation, and ln of the layer over the flooded film at which it begins. T is the greatest age, h the
 #: flooded film at the reference.
 (
     LAYER_NEW,
@@ -57,10 +60,11 @@ class Depletion:
     def rate(self, own: FloatArray) -> dict[str, FloatArray]:
         """Return K (1/(m^2 age)), p, e and g (1/age) of draws (..., 10)."""
         flows, evaporation = self.rates.of(own)
-        square = np.exp(2.0 * (scale(self.reference) + own[..., LAYER_NEW]))
+        power = self.rates.power(own)
+        square = 2.0 * scale(self.reference) + (2.0 - power) * own[..., LAYER_NEW]
         return {
-            "K": 2.0 * flows / square / self.greatest_age,
-            "p": self.rates.power(own),
+            "K": 2.0 * flows * np.exp(-square) / self.greatest_age,
+            "p": power,
             "e": evaporation / self.greatest_age,
             "g": own[..., THICKENING] / self.greatest_age,
         }
@@ -96,10 +100,10 @@ class Rates:
     evaporation: float | None = None
 
     def of(self, own: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the losses of a new layer by side flow and evaporation, 1/T, of what specimens have."""
+        """Return the losses of a layer h by side flow and evaporation, 1/T, of what specimens have."""
         loss = np.exp(np.minimum(own[..., LOSS], 50.0))
         if self.side_flow is not None:
-            flows = 0.5 * self.side_flow * np.exp(2.0 * own[..., LAYER_NEW])
+            flows = np.full_like(loss, 0.5 * self.side_flow)
             return flows, loss if self.evaporation is None else np.full_like(loss, self.evaporation)
         if self.evaporation is not None:
             return loss, np.full_like(loss, self.evaporation)
@@ -117,7 +121,7 @@ class Rates:
         flows, evaporation = self.of(own)
         power = self.power(own)
         new = np.exp(-power * own[..., LAYER_NEW])
-        return log_layer(new, power * flows * new, evaporation, age, power)
+        return log_layer(new, power * flows, evaporation, age, power)
 
     @property
     def free(self) -> IntArray:

@@ -23,12 +23,12 @@ from hersey.life.oil_layer import USUAL_SHARPNESS
 FLOODED, DRY = 3.0, -4.0
 #: What belongs to the machine and its oil, common to all runs: viscosity against temperature, sharpness, how
 #: large rolling is and its two powers, and the power of the film. Its ends; films of rolling contacts had a
-#: sharpness of 2 to 5.
+#: sharpness of 2 to 5, but the wider a contact, the more of the oil before it passes through.
 COMMON = slice(TEMPERATURE_SENSITIVITY, LAYER)
 COMMON_ENDS = np.array(
     [
         [-0.5, np.log(1.5 / USUAL_SHARPNESS), -3.0, -1.2, 0.0, -0.05, -0.2],
-        [0.5, np.log(6.5 / USUAL_SHARPNESS), 4.0, 0.6, 6.0, 0.05, 1.2],
+        [0.5, np.log(20.0 / USUAL_SHARPNESS), 4.0, 0.6, 6.0, 0.05, 1.2],
     ]
 )
 #: What is free: all, all but the layer, and what each run has of its own.

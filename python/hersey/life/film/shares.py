@@ -1,8 +1,8 @@
 """The share of the drag that does not follow the film, and what each share makes of the runs.
 
 Rolling, seals and gears add to the torque and hide that the film thins. The more of such drag there is, the
-sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 45 %; the
-dwells narrow that where a share does not describe them.
+sooner a film starves that shows the same torque. Its share is assumed to be anything from 0 to 45 %, the
+greater the less likely; the dwells narrow that where a share does not describe them.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from hersey.result import Means, Record
 #: Shares that are tried, and the ends of what each stands for.
 SHARES = np.array([0.05, 0.2, 0.3, 0.4])
 _ENDS = np.array([0.0, 0.125, 0.25, 0.35, 0.45])
-#: All runs err together where the law does, so all of them count as so many.
-_COUNT_AS = 2.0
+#: How likely each is beforehand: the more, the less likely, and the most half as likely as none.
+_BEFOREHAND = np.diff(_ENDS - _ENDS**2 / (4.0 * _ENDS[-1]))
 #: Width of the interval of the share (of 45 %) from which the dwells say little.
 _NARROW = 0.25
 #: Runs above which only some specimens are followed at each share.
@@ -104,9 +104,10 @@ def by_share(fit: LayerFit, units: list[str], young: BoolArray) -> ByShare:
     some = _some_runs(units)
     part = replace(fit, dwells=fit.dwells.rows(some))
     layers = tuple(part.layers(each.common) for each in found)
-    unlikely = _COUNT_AS * np.array([each.unlikely for each in found])
+    # Where the law errs all runs err alike, so all of them count as one.
+    unlikely = np.array([each.unlikely for each in found])
     unlikely += [_off_level(each, fit.level, young[some]) for each in layers]
-    weight = np.diff(_ENDS) * np.exp(-0.5 * (unlikely - unlikely.min()))
+    weight = _BEFOREHAND * np.exp(-0.5 * (unlikely - unlikely.min()))
     weight /= weight.sum()
     best = int(np.argmax(weight))
     likeliest = layers[best] if some.size == len(units) else fit.layers(found[best].common)

@@ -315,7 +315,7 @@ def fit_growth(
     >>> growth = fit_growth(["A"] * 4 + ["B"] * 4, [0, 10, 20, 30] * 2,
     ...                     [1, 1.2, 1.4, 1.6, 1.1, 1.4, 1.7, 2.0], 0.005, laws=["linear"])
     >>> [round(each.age.value) for each in growth.reaches(2.0).units]
-    [49, 30]
+    [50, 30]
     """
     chosen = _chosen(laws)
     names, columns = checked_runs(unit, age, value, error)

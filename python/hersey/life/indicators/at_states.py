@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.life.indicators.least_torque import DRAWS, RUNS, LeastTorque, alike_in_all, least_torque
 from hersey.life.indicators.load_cases import State
 from hersey.life.indicators.run_dwells import CampaignRuns
-from hersey.life.indicators.torque_surface import TorqueSurface, shared_kernel
+from hersey.life.indicators.shared_kernel import shared_kernel
+from hersey.life.indicators.torque_surface import TorqueSurface
 from hersey.schema.warning import Warning
 
 #: Runs that a warning names.
 _NAMED = 3
 #: Factor beyond the slowest and the fastest dwell of a run up to which its curve is asked; what rounds off.
 _NEAR, _SLIP = 1.25, 0.999
-#: Steps of the curve in ln speed, its points at the least, and how many draws give an error.
-_GRID, _FEWEST_SPEEDS, _DRAWS = 0.08, 24, 32
+#: Steps of the curve in ln speed, and its points at the least.
+_GRID, _FEWEST_SPEEDS = 0.08, 24
 
 
 @dataclass(frozen=True)
@@ -27,9 +29,9 @@ class Curves:
 
     ``speed`` in rad/s, shape (speeds,); ``torque`` in N m, (runs, speeds), NaN where a run does not show it:
     beyond its dwells and what lies near them. ``least`` is the speed of least torque, (runs,), NaN where it
-    lies at no speed between, and ``error`` its relative standard error; ``drawn`` are joint draws of some
-    runs, (draws, speeds) each. ``below`` and ``above`` mark runs whose torque is least at their slow or fast
-    end.
+    lies at no speed between, ``error`` its relative standard error and ``common`` what is the same in all
+    runs; ``drawn`` are joint draws of some runs, (draws, speeds) each. ``below`` and ``above`` mark runs
+    whose torque is least at their slow or fast end.
     """
 
     temperature: float | None
@@ -40,6 +42,7 @@ class Curves:
     below: BoolArray
     above: BoolArray
     drawn: dict[int, FloatArray]
+    common: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -126,8 +129,9 @@ def at_states(
     speed = np.array([state.speed for state in states])
     temperature = np.array([np.nan if state.temperature is None else state.temperature for state in states])
     places = np.flatnonzero(runs.enough)
-    some = set(places[np.linspace(0, places.size - 1, min(drawn, places.size)).round().astype(int)].tolist())
+    some, alike = (_spread_over(places, most) for most in (drawn, RUNS))
     curves = [_empty(runs, temperature) for temperature in temperatures]
+    leasts: list[list[LeastTorque]] = [[] for _ in curves]
     rests: dict[tuple[int, bool], FloatArray] = {}  # by object: runs of the same rest share it
     for place, dwells, rest in runs.usable():
         surface = TorqueSurface(dwells, kernel)
@@ -144,11 +148,24 @@ def at_states(
         drive[place] = np.where(together > 0.0, together, np.nan)  # a no-load torque fitted below nothing
         drive_error[place] = at.error * at.torque / drive[place]
         outside[place], factor[place], kelvin[place] = at.outside, at.factor, at.kelvin
-        for curve in curves:
-            _trace(curve, place, surface, keep=place in some)
+        for curve, least in zip(curves, leasts, strict=True):
+            found = _trace(curve, place, surface, keep=place in some, together=place in alike)
+            least += [found] if found else []
+    put_back = tuple(map(_put_back, curves, leasts))
     return AtStates(
-        runs, tuple(states), belt, belt_error, drive, drive_error, outside, factor, kelvin, tuple(curves)
+        runs, tuple(states), belt, belt_error, drive, drive_error, outside, factor, kelvin, put_back
     )
+
+
+def _spread_over(places: IntArray, most: int) -> set[int]:
+    """So many of the places at the most, evenly spread."""
+    return set(places[np.linspace(0, places.size - 1, min(most, places.size)).round().astype(int)].tolist())
+
+
+def _put_back(curves: Curves, leasts: list[LeastTorque]) -> Curves:
+    """Return curves whose least torque lies where it would without smoothing."""
+    moved, common = alike_in_all(leasts)
+    return replace(curves, least=curves.least * np.exp(-moved), common=common)
 
 
 def _empty(runs: CampaignRuns, temperature: float | None) -> Curves:
@@ -162,34 +179,23 @@ def _empty(runs: CampaignRuns, temperature: float | None) -> Curves:
     return Curves(temperature, grid, torque, nothing, nothing.copy(), none, none.copy(), {})
 
 
-def _trace(curves: Curves, place: int, surface: TorqueSurface, *, keep: bool) -> None:
-    """Fill in the curve of a run."""
+def _trace(
+    curves: Curves, place: int, surface: TorqueSurface, *, keep: bool, together: bool
+) -> LeastTorque | None:
+    """Fill in the curve of a run; return its least torque, with what is alike in all runs if ``together``."""
     own = surface.dwells.speed
     near = (curves.speed >= own.min() / _NEAR * _SLIP) & (curves.speed <= own.max() * _NEAR / _SLIP)
     temperature = np.nan if curves.temperature is None else curves.temperature
     if np.count_nonzero(near) < 3 or not surface.covers(temperature):
-        return
-    median, drawn = surface.curve(curves.speed[near], temperature, _DRAWS, seed=0)
-    curves.torque[place, near] = median
+        return None
+    speed = curves.speed[near]
+    curves.torque[place, near] = surface.curve(speed, temperature)
+    drawn = surface.drawn(speed, temperature, DRAWS, seed=0) if keep or together else None
     if keep:
-        of_all = np.full((_DRAWS, curves.speed.size), np.nan)
+        of_all = np.full((DRAWS, curves.speed.size), np.nan)
         of_all[:, near] = drawn
         curves.drawn[place] = of_all
-    at = np.log(curves.speed[near])
-    least, where = _least(at, np.vstack([median, drawn]))
-    curves.below[place], curves.above[place] = where[0] == 0, where[0] == at.size - 1
-    if not (curves.below[place] or curves.above[place]):
-        curves.least[place] = np.exp(least[0])
-        curves.error[place] = float(np.sqrt(np.mean((least[1:] - least[0]) ** 2)))
-
-
-def _least(at: FloatArray, torque: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Where curves are least, by a parabola through three points of ln torque; and the nearest point."""
-    logs = np.log(torque)
-    where = np.argmin(logs, axis=1)
-    middle = np.clip(where, 1, at.size - 2)[:, None]
-    before, here, after = (np.take_along_axis(logs, middle + step, axis=1)[:, 0] for step in (-1, 0, 1))
-    bend = before - 2.0 * here + after
-    step = np.clip(0.5 * (before - after) / np.where(bend > 0, bend, np.inf), -0.5, 0.5)
-    inside = where == middle[:, 0]
-    return at[where] + np.where(inside, step, 0.0) * (at[1] - at[0]), where
+    least = least_torque(surface, speed, temperature, drawn)
+    curves.below[place], curves.above[place] = least.below, least.above
+    curves.least[place], curves.error[place] = np.exp(least.log_speed), least.error
+    return least

@@ -58,7 +58,7 @@ def transitions(estimates: AtStates, machine: Machine) -> list[Indicator]:
                 point.speed,
                 speed,
                 np.where(np.isfinite(speed), curves.error, np.nan),
-                _speed_gain(estimates, machine),
+                float(np.hypot(_speed_gain(estimates, machine), curves.common)),
                 warnings=(
                     Warning(
                         "speed of least torque",

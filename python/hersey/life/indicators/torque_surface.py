@@ -14,33 +14,23 @@ itself; so the logarithm is taken about the smooth torque, not about that of the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy import linalg, optimize
+from scipy import linalg
 
 from hersey.arrays import BoolArray, FloatArray
 from hersey.errors import InsufficientDataError, ParameterError
 
-#: Kelvin that count as much as one unit of ln speed, where the search of the kernel starts.
-_TEMPERATURE_SCALE = 50.0
+#: Kelvin that count as much as one unit of ln speed in the trend.
+TEMPERATURE_SCALE = 50.0
 #: Levels this close are one: logarithm of speed, K.
 _SAME_SPEED, _SAME_TEMPERATURE = 0.02, 3.0
 #: Dwells beyond the terms of the trend, which show deviations and noise.
 _TO_SPARE = 1
 #: Fewest dwells of a run that determine its torque.
 FEWEST = 4
-#: Runs from which the kernel is estimated, and dwells of each, at most.
-_RUNS, _DWELLS = 24, 60
-#: Where the search of the kernel starts, how far that is known, and where it stays: logarithms of deviation,
-#: lengths (of temperature in `_TEMPERATURE_SCALE`) and scatter, and the tilt in 1/`_TEMPERATURE_SCALE`.
-_START = np.array([*np.log([0.5, 2.0, 2.0, 0.005]), 0.5])
-_KNOWN = np.array([2.0, 1.5, 1.5, 2.0, 1.0])
-_LOW = np.array([*np.log([1e-3, 0.2, 0.2, 1e-4]), -3.0])
-_HIGH = np.array([*np.log([20.0, 30.0, 30.0, 1.0]), 3.0])
 #: Variance of ln torque below which no dwell is believed: rounding of large covariances.
 _FLOOR = 1e-9
 #: Relative standard error from which on a torque counts as unknown.
@@ -114,9 +104,10 @@ class _Solved(NamedTuple):
     trend: FloatArray
     left: FloatArray
     settled: FloatArray  #: ln torque at the dwells, smooth
+    noise: FloatArray  #: variance of ln torque of the dwells about that
 
 
-class _Layout:
+class Layout:
     """Where the dwells of a run lie, and the trend that they determine."""
 
     def __init__(self, dwells: RunDwells) -> None:
@@ -143,7 +134,7 @@ class _Layout:
 
     def trend_at(self, log_speed: FloatArray, kelvin: FloatArray) -> FloatArray:
         """Terms 1, u, T, u T, u^2, T^2 so far as they can be estimated, shape (points, terms)."""
-        u, t = log_speed - self._origin[0], (kelvin - self._origin[1]) / _TEMPERATURE_SCALE
+        u, t = log_speed - self._origin[0], (kelvin - self._origin[1]) / TEMPERATURE_SCALE
         return np.stack([np.ones_like(u), u, t, u * t, u * u, t * t], axis=1)[:, self._terms]
 
     def _estimable_terms(self) -> list[int]:
@@ -176,7 +167,7 @@ class _Layout:
         weights = _backward(inner, _forward(inner, trend.T @ both[:, -1]))
         left = both[:, -1] - trend @ weights
         pulled = _backward(root, left)
-        return _Solved(root, inner, weights, trend, left, value - noise * pulled)
+        return _Solved(root, inner, weights, trend, left, value - noise * pulled, noise)
 
     def settled(self, kernel: Kernel) -> _Solved:
         """The surface about itself."""
@@ -212,7 +203,7 @@ class TorqueSurface:
                 f"only {dwells.speed.size} dwells: interpolating torque needs at least {FEWEST}"
             )
         self.dwells, self.kernel = dwells, kernel
-        self._layout = _Layout(dwells)
+        self._layout = Layout(dwells)
         self._solved = self._layout.settled(kernel)
 
     def covers(self, temperature: float) -> bool:
@@ -241,24 +232,19 @@ class TorqueSurface:
             *self._nearest(speed, temperature),
         )
 
-    def curve(
-        self, speed: FloatArray, temperature: float, draws: int, seed: int
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the torque against speed (rad/s, shape (speeds,)) at a temperature in K, in N m.
-
-        The median, shape (speeds,), and joint draws, (draws, speeds).
+    def curve(self, speed: FloatArray, temperature: float) -> FloatArray:
+        """Return the median torque against speed (rad/s, shape (speeds,)) at a temperature in K, in N m.
 
         Raises
         ------
         ParameterError
             If the run does not cover this temperature.
         """
-        if not self.covers(temperature):
-            raise ParameterError(
-                f"the run was recorded at other temperatures and does not cover {temperature:.6g} K"
-            )
-        speed = np.asarray(speed, float)
-        mean, across, basis = self._predicted(speed, np.full_like(speed, temperature))
+        return _torque(self._on_curve(speed, temperature)[0])
+
+    def drawn(self, speed: FloatArray, temperature: float, draws: int, seed: int) -> FloatArray:
+        """Return joint draws of such a curve, (draws, speeds)."""
+        mean, across, basis = self._on_curve(speed, temperature)
         steps = np.log(speed)[:, None] - np.log(speed)
         covariance = self.kernel.covariance(steps, np.zeros(())) - across.T @ across + basis.T @ basis
         # Of neighbours on a fine grid nearly all is known: without a little more there is no root.
@@ -269,7 +255,29 @@ class TorqueSurface:
             spread, axes = np.linalg.eigh(covariance)
             root = np.sqrt(np.maximum(spread, 0.0)) * axes
         normal = np.random.default_rng(seed).standard_normal((draws, speed.size))
-        return _torque(mean), _torque(mean + normal @ root.T)
+        return _torque(mean + normal @ root.T)
+
+    def repeated(self, speed: FloatArray, temperature: float, draws: int, seed: int) -> FloatArray:
+        """Return such curves that the same run would show with other noise, (draws, speeds)."""
+        solved, layout = self._solved, self._layout
+        mean, across, _ = self._on_curve(speed, temperature)
+        normal = np.random.default_rng(seed).standard_normal((draws, solved.noise.size))
+        noise = _forward(solved.root, (normal * np.sqrt(solved.noise)).T)
+        weights = _backward(solved.inner, _forward(solved.inner, solved.trend.T @ noise))
+        trend = layout.trend_at(np.log(speed), layout.temperatures(np.full(speed.shape, temperature)))
+        return _torque(mean + (trend @ weights + across.T @ (noise - solved.trend @ weights)).T)
+
+    def with_more_noise(self, factor: float) -> TorqueSurface:
+        """Return the surface of the same dwells, taken to be so many times as noisy."""
+        dwells = replace(self.dwells, error=factor * self.dwells.error)
+        return TorqueSurface(dwells, replace(self.kernel, scatter=factor * self.kernel.scatter))
+
+    def _on_curve(self, speed: FloatArray, temperature: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        if not self.covers(temperature):
+            raise ParameterError(
+                f"the run was recorded at other temperatures and does not cover {temperature:.6g} K"
+            )
+        return self._predicted(speed, np.full(speed.shape, temperature))
 
     def _predicted(
         self, speed: FloatArray, temperature: FloatArray
@@ -300,70 +308,6 @@ class TorqueSurface:
         ) ** 2
         nearest = np.arange(far.shape[0]), np.argmin(far, axis=1)
         return ~np.all(sides, axis=0), np.exp(step[nearest]), temperature_step[nearest]
-
-
-def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
-    """Return the kernel of a campaign by the restricted likelihood of its runs together.
-
-    Of many runs some are used, spread evenly over those given: give them by specimen and age.
-
-    Raises
-    ------
-    InsufficientDataError
-        If no run has enough dwells.
-    """
-    enough = [run for run in runs if run.speed.size >= FEWEST]
-    if not enough:
-        raise InsufficientDataError(f"no run has {FEWEST} dwells, so torque between them cannot be estimated")
-    used = (vars(_thinned(enough[i])).values() for i in _evenly(len(enough), _RUNS))
-    return _kernel_of(tuple(tuple(values.tobytes() for values in run) for run in used))
-
-
-@lru_cache(maxsize=8)
-def _kernel_of(used: tuple[tuple[bytes, ...], ...]) -> Kernel:
-    """The kernel of the arrays of `RunDwells` of some runs: a campaign is asked for it again and again."""
-    layouts = [_Layout(RunDwells(*map(np.frombuffer, run))) for run in used]
-    numbers = _START
-    for tolerance in (1e-4, 1e-7):  # that about which logarithms are taken depends on the kernel, a little
-        abouts = [layout.settled(_kernel(numbers)).settled for layout in layouts]
-        numbers = _likeliest(layouts, abouts, numbers, tolerance)
-    return _kernel(numbers)
-
-
-def _likeliest(
-    layouts: list[_Layout], abouts: list[FloatArray], start: FloatArray, tolerance: float
-) -> FloatArray:
-    def misfit(numbers: FloatArray) -> float:
-        # Weak knowledge keeps what no run shows where it was, as the length in temperature of runs of one.
-        prior = float(np.sum(((numbers - _START) / _KNOWN) ** 2))
-        kernel = _kernel(numbers)
-        return prior + sum(map(lambda layout, about: layout.misfit(kernel, about), layouts, abouts))
-
-    found = optimize.minimize(
-        misfit,
-        start,
-        method="L-BFGS-B",
-        bounds=list(zip(_LOW, _HIGH, strict=True)),
-        options={"ftol": tolerance},
-    )
-    return np.asarray(found.x)
-
-
-def _kernel(numbers: FloatArray) -> Kernel:
-    deviation, speed, kelvin, scatter = np.exp(numbers[:4]).tolist()
-    return Kernel(
-        deviation, speed, kelvin * _TEMPERATURE_SCALE, float(numbers[4]) / _TEMPERATURE_SCALE, scatter
-    )
-
-
-def _thinned(run: RunDwells) -> RunDwells:
-    keep = _evenly(run.speed.size, _DWELLS)
-    return RunDwells(*(values[keep] for values in vars(run).values()))
-
-
-def _evenly(count: int, most: int) -> list[int]:
-    """Places of so many at most, evenly spread."""
-    return sorted({round(place) for place in np.linspace(0, count - 1, min(count, most)).tolist()})
 
 
 def _torque(logarithm: FloatArray) -> FloatArray:
