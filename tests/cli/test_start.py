@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import hersey
 from hersey.cli.application import VERBS, load
 from hersey.cli.loading import loading
 from tests.cli.command import run, run_apart
@@ -59,6 +60,19 @@ def test_the_list_of_verbs_loads_no_verb() -> None:
     assert not modules & (HEAVY | VAIN)
     assert not rooms(modules)
     assert not {f"hersey.cli.{name}" for name in VERBS} & modules
+
+
+def test_runs_are_listed_without_tables_and_arrays(tmp_path: Path) -> None:
+    from hersey.life.age import Age
+    from hersey.life.campaign import Campaign
+    from hersey.life.campaign.conversion import entry_of
+
+    table = {"speed [rpm]": [10, 20, 40, 80], "torque [mN*m]": [5.0, 5.6, 6.3, 7.2]}
+    kept = entry_of(hersey.SteadyPoints.from_table(table, isothermal=True), "sample.csv")
+    with Campaign.create(tmp_path / "life.hersey") as campaign:
+        campaign.add_entries([(kept, "F12", Age(1000.0, "pages"))])
+    modules = loaded("campaign", "list", "life.hersey", cwd=tmp_path)
+    assert not modules & (HEAVY - {"pydantic"})  # which typer loads to convert options
 
 
 def test_importing_the_package_loads_nothing() -> None:

@@ -16,7 +16,8 @@ from hersey.life.growth import importance, marginal
 from hersey.life.growth.laws import LAWS
 from hersey.life.growth.marginal import likelihood
 from hersey.life.growth.points import points_of
-from hersey.life.indicators import shared_kernel
+from hersey.life.indicators import load_cases, shared_kernel, torque_surface
+from hersey.life.indicators.of_campaign import asked_of
 from hersey.life.other_uses import uses_beside
 from hersey.life.time_to_failure import way
 from tests.life import shipped
@@ -26,23 +27,31 @@ def test_no_growth_is_fitted_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """The conditions of the machine file among others: their growths are those of the times to failure."""
     shipped.fewer(monkeypatch)
     monkeypatch.setattr(uses_module, "_LIMITS", (1.0, 1.25))
-    monkeypatch.setattr(uses_module, "_COLDER", (-10.0, 0.0))
+    monkeypatch.setattr(load_cases, "OTHER_STARTS", (-10.0,))
     machine = replace(shipped.machine(), limits=hersey.Limits(motor_torque=1.0))
     campaign, fits, fit = shipped.opened(2), Counter[bytes](), way.fit_growth
+    surfaces, surface = [0], torque_surface.TorqueSurface.__init__
 
     def counted(unit: Any, age: Any, value: FloatArray, *more: Any, **named: Any) -> Any:
         fits[named["quantity"].encode() + value.tobytes()] += 1
         return fit(unit, age, value, *more, **named)
 
+    def interpolated(self: Any, *given: Any) -> None:
+        surfaces[0] += 1
+        surface(self, *given)
+
     monkeypatch.setattr(way, "fit_growth", counted)
+    monkeypatch.setattr(torque_surface.TorqueSurface, "__init__", interpolated)
     shared_kernel._kernel_of.cache_clear()
-    indicators = hersey.indicators_of(campaign, machine, signs=False)
+    asked = asked_of(campaign, machine)
+    indicators = asked.indicators(machine, signs=False)
     found = hersey.time_to_failure(indicators)
-    once = fits.total()
-    uses = uses_beside(found, campaign, machine, indicators)
+    once, asked_once = fits.total(), surfaces[0]
+    uses = uses_beside(found, asked, machine, indicators)
     assert set(fits.values()) == {1}
     assert fits.total() - once == 1  # the motor torque of the colder start
-    assert shared_kernel._kernel_of.cache_info().misses == 1  # of the colder start too
+    assert surfaces == [asked_once]  # of the colder start too
+    assert shared_kernel._kernel_of.cache_info().misses == 1
     (stated,) = (use for use in uses.uses if use.stated)
     assert [each.age for each in stated.ends] == [each.age.age for each in found.units]
 

@@ -122,6 +122,6 @@ def test_the_page_holds_the_answer() -> None:
 
 
 def test_a_specimen_that_is_not_there_is_refused_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(following, "indicators_of", lambda *_: pytest.fail("the work began"))
+    monkeypatch.setattr(following, "asked_of", lambda *_: pytest.fail("the work began"))
     with pytest.raises(ParameterError, match=r"^unit: .* has no specimen 'X9'\. Specimens: U1, U2$"):
         follow(shipped.opened(2), bare(), unit="X9")

@@ -42,7 +42,7 @@ def test_curves_reach_the_level_at_its_age_also_beyond_the_last_run() -> None:
     for i in range(40):
         for unit in range(2):
             at = known[i, unit]
-            assert found.curves(np.array([at]))[i, unit, 0] == pytest.approx(0.3)
+            assert found.curves(np.array([at]), [unit])[i, 0, 0] == pytest.approx(0.3)
             assert found.curve(unit, np.array([at]))[i, 0] == pytest.approx(0.3)
     within, _ = found.ages(0.06, 0.0, accumulates=False)
     assert within == pytest.approx(0.3)

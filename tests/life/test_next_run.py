@@ -12,7 +12,7 @@ import pytest
 from hersey.arrays import FloatArray
 from hersey.life.growth.limit_ages import age_at_limit
 from hersey.life.time_to_failure import next_run
-from hersey.life.time_to_failure.first import SpecimenEnd
+from hersey.life.time_to_failure.first import Picks, SpecimenEnd
 from hersey.life.time_to_failure.next_run import next_runs
 
 
@@ -37,7 +37,7 @@ def test_a_run_errs_by_its_scatter_and_its_error(monkeypatch: pytest.MonkeyPatch
         row={"U1": 0}, error=80.0, drawn_values=drawn_values, mode=SimpleNamespace(name="torque")
     )
     end = SpecimenEnd("U1", age_at_limit("U1", first, 500.0), {"torque": 1.0}, ())
-    picks = [(np.arange(first.size)[:, None], first)]
+    picks = Picks(np.arange(first.size)[None, :, None], first[:, None])
     (found,) = next_runs([mode], [end], picks, np.eye(1), 1000.0, random)
     assert (found.unit, found.mode, found.until, found.present) == ("U1", "torque", 1000.0, False)
     assert found.before == pytest.approx(0.5, abs=0.03)

@@ -13,6 +13,7 @@ from hersey.errors import ParameterError
 from hersey.life import other_uses as module
 from hersey.life.growth.limit_ages import Interval
 from hersey.life.indicator import Indicator
+from hersey.life.indicators import load_cases
 from hersey.life.other_uses import AS_STATED, OtherUses, Use, UseEnd, other_uses
 from hersey.machine.duty import LifeTable
 from hersey.machine.machine import Machine
@@ -30,7 +31,7 @@ def told() -> tuple[OtherUses, hersey.TimeToFailure]:
     with pytest.MonkeyPatch.context() as patch:
         shipped.fewer(patch)
         patch.setattr(module, "_LIMITS", (1.0, 1.25))
-        patch.setattr(module, "_COLDER", (-10.0, 0.0))
+        patch.setattr(load_cases, "OTHER_STARTS", (-10.0,))
         found = hersey.indicators_of(shipped.opened(2), machine(), signs=False)
         return other_uses(shipped.opened(2), machine(), found), hersey.time_to_failure(found)
 

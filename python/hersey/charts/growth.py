@@ -64,12 +64,12 @@ def growth_chart(
     last = max(begun + growth.last_age[i] for parts in panels.values() for i, begun in parts)
     end = axis_end(last, [each.age.value for each in known])
     at = np.linspace(0.0, end, _POINTS)
-    curves, runs = growth.at(at), growth.runs_of_units()
+    drawn = [i for parts in shown.values() for i, _ in parts]
+    curves, runs = growth.at(at, units=[growth.units[i] for i in drawn]), growth.runs_of_units()
     line = ages.limit if ages and not ages.accumulates else None
     columns = min(count, _COLUMNS)
-    drawn = [i for parts in shown.values() for i, _ in parts]
     values = np.concatenate([runs[i][1] for i in drawn])
-    top = _FREE * max(float(values.max()), line or float(curves.median[drawn, -1].min()))
+    top = _FREE * max(float(values.max()), line or float(curves.median[:, -1].min()))
     steep = top > _STEEP * float(values.min())
     bottom = float(values.min()) / _FREE if steep else 0.0
     axes = _Axes(
@@ -122,8 +122,8 @@ def _grown(
     layers: list[alt.Chart] = []
     ends = [*(begun for _, begun in parts[1:]), math.inf]
     for (i, begun), until in zip(parts, ends, strict=True):
-        inside = begun + at <= until
-        drawn = {name: getattr(curves, name)[i][inside] for name in ("low", "median", "high")}
+        inside, row = begun + at <= until, curves.units.index(growth.units[i])
+        drawn = {name: getattr(curves, name)[row][inside] for name in ("low", "median", "high")}
         band = rows_of(
             age=begun + at[inside], **{name: np.minimum(each, most) for name, each in drawn.items()}
         )

@@ -12,7 +12,7 @@ from hersey.life.ageing_maps import AgeingMaps, ageing_maps
 from hersey.life.drift.result import Drift, fit_drift
 from hersey.life.film.through_life import FilmLife, film_life
 from hersey.life.indicator import Indicators, Runs
-from hersey.life.indicators.of_campaign import indicators_of
+from hersey.life.indicators.of_campaign import asked_of
 from hersey.life.other_uses import OtherUses, uses_beside
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
 from hersey.life.time_to_failure.questions import Asked, questions_of
@@ -131,7 +131,8 @@ def follow(
     diagnosis = campaign.diagnose()
     warnings += [*diagnosis.warnings, *diagnosis.warning_of_excluded()]
     said("torque at the limits")
-    indicators = indicators_of(campaign, machine)
+    asked_runs = asked_of(campaign, machine)
+    indicators = asked_runs.indicators(machine)
     film = tried("film through life", lambda: film_life(campaign, machine, excluded=diagnosis.excluded))
     if film is not None:
         indicators = film.with_starvation(indicators)
@@ -146,7 +147,9 @@ def follow(
     others = (
         tried(
             "ages in other operating conditions",
-            lambda: uses_beside(found, campaign, machine, indicators, excluded=diagnosis.excluded, seed=seed),
+            lambda: uses_beside(
+                found, asked_runs, machine, indicators, excluded=diagnosis.excluded, seed=seed
+            ),
         )
         if uses
         else None

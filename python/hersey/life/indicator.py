@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -46,6 +47,14 @@ class Runs(Record):
     def segments(self, kinds: Collection[str]) -> Segments:
         """Return the segments of the runs, which begin with each event of some kinds."""
         return segments(self.run, self.unit, self.age, self.events, kinds)
+
+    @cached_property
+    def last(self) -> dict[str, float]:
+        """Age at which each specimen was last seen."""
+        last: dict[str, float] = {}
+        for unit, age in zip(self.unit, self.age.tolist(), strict=True):
+            last[unit] = max(age, last.get(unit, 0.0))
+        return last
 
     @property
     def units(self) -> tuple[str, ...]:

@@ -7,15 +7,14 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
-import numpy as np
-
-from hersey.arrays import FloatArray
 from hersey.errors import ParameterError
 from hersey.life.age import Age
 from hersey.result import Means, Record
 
 if TYPE_CHECKING:
     import polars as pl
+
+    from hersey.arrays import FloatArray
 
 #: What may be done to a specimen. From each on friction grows anew; damage does so in new parts alone.
 RE_GREASED, CLEANED, REPLACED = "re-greased", "cleaned", "replaced"
@@ -111,11 +110,13 @@ class Segments(NamedTuple):
 
     def stretches(self, unit: Sequence[str], age: FloatArray) -> tuple[Stretch, ...]:
         """Return the segments of runs of specimens at ages; none where no maintenance began one."""
+        if not (age - self.age).any():
+            return ()
         found = {
             name: Stretch(name, of, at - since)
             for name, of, at, since in zip(self.name, unit, age.tolist(), self.age.tolist(), strict=True)
         }
-        return tuple(found.values()) if any(each.begun for each in found.values()) else ()
+        return tuple(found.values())
 
 
 def segments(
@@ -136,16 +137,16 @@ def segments(
     kinds
         What begins a segment.
     """
-    names, since = list(unit), np.zeros(age.size)
+    names, since = list(unit), 0.0 * age
     begun = dict.fromkeys(unit, 0.0)
     of_unit: dict[str, list[Event]] = {}
     for event in events:
         if event.kind in kinds and event.unit in begun:
             of_unit.setdefault(event.unit, []).append(event)
             begun[event.unit] = max(begun[event.unit], event.age.value)
-    for i, (number, of, at) in enumerate(zip(run, unit, age.tolist(), strict=True)):
-        own = of_unit.get(of, [])
-        before = [each.age.value for each in own if at > each.age.value or each.run == number]
+    for i in [place for place, of in enumerate(unit) if of in of_unit]:
+        of, at, own = unit[i], float(age[i]), of_unit[unit[i]]
+        before = [each.age.value for each in own if at > each.age.value or each.run == run[i]]
         since[i] = max(before, default=0.0)
         later = [each.age.value for each in own if each.age.value not in before]
         if later:

@@ -14,12 +14,10 @@ import numpy as np
 from hersey.arrays import one_thread
 from hersey.errors import HerseyError, ParameterError
 from hersey.life.growth.limit_ages import Earliest, Interval, of_population
-from hersey.life.indicators.load_cases import load_cases
-from hersey.life.indicators.of_campaign import indicators_of
-from hersey.life.indicators.run_dwells import read_runs_of
+from hersey.life.indicators.of_campaign import AskedRuns, asked_of
 from hersey.life.time_to_failure.first import ages_of_new, ends_of_specimens, joint_order
 from hersey.life.time_to_failure.joined import correlations
-from hersey.life.time_to_failure.way import FittedWay, fitted_way, last_ages
+from hersey.life.time_to_failure.way import FittedWay, fitted_way
 from hersey.result import Means, Record, Result
 from hersey.units import celsius, takes_si
 
@@ -32,9 +30,8 @@ if TYPE_CHECKING:
     from hersey.life.time_to_failure.estimate import TimeToFailure
     from hersey.machine.machine import Machine
 
-#: Limits of the torque that are tried, over the one stated, and coldest starts beside the one as it is, K.
+#: Limits of the torque that are tried, over the one stated.
 _LIMITS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.8)
-_COLDER = (-10.0, 0.0, 10.0)
 #: The duty as the machine file states it.
 AS_STATED = "as stated"
 #: Ways whose limit is that of the motor's torque.
@@ -152,12 +149,14 @@ def other_uses(
     ParameterError
         If the machine states nothing that other conditions could change.
     """
-    return uses_beside(None, campaign, machine, indicators, seed=seed, progress=progress)
+    _refuse_unchangeable(machine)
+    asked = asked_of(campaign, machine)
+    return uses_beside(None, asked, machine, indicators, seed=seed, progress=progress)
 
 
 def uses_beside(
     found: TimeToFailure | None,
-    campaign: Campaign,
+    asked: AskedRuns,
     machine: Machine,
     indicators: Indicators,
     *,
@@ -167,18 +166,15 @@ def uses_beside(
 ) -> OtherUses:
     """Return `other_uses` with the growths of a `time_to_failure` of these very indicators and this seed.
 
-    ``excluded`` are the places of runs at which the indicators are taken as unknown.
+    ``asked`` is what their runs say; ``excluded`` are the places of runs at which the indicators are taken
+    as unknown.
     """
-    limit = machine.limits.motor_torque
-    cold = _coldest(campaign, machine)
+    _refuse_unchangeable(machine)
+    limit, cold = machine.limits.motor_torque, asked.coldest
     limits = () if limit is None else tuple(limit * factor for factor in _LIMITS)
-    starts = () if cold is None or limit is None else tuple(cold + colder for colder in _COLDER)
+    starts = () if limit is None else tuple(asked.starts)
     points = tuple(point.name for point in machine.points) if _depends_on_duty(machine) else ()
     duties = (AS_STATED, *points)
-    if not limits and not points:
-        raise ParameterError(
-            "there are no other operating conditions to compare. Set motor_torque in [limits]"
-        )
     ways = _Ways({each.name: i for i, each in enumerate(indicators.each)}, seed)
     if found is not None:
         ways.take(indicators, found)
@@ -188,7 +184,7 @@ def uses_beside(
         stated = coldest in (cold, None) and duty == AS_STATED
         here = indicators
         if not stated:
-            here = _in_use(campaign, machine, indicators, coldest, duty).without_runs(excluded)
+            here = _in_use(asked, machine, indicators, coldest, duty).without_runs(excluded)
         for torque in limits or (None,):
             ends = ways.ends(here, torque)
             uses.append(Use(torque, coldest, duty, stated and torque == limit, *ends))
@@ -220,7 +216,7 @@ class _Ways:
             return (), None, None
         random = np.random.default_rng([self._seed, 2])
         of_runs = correlations([way.residuals for way in ways])
-        units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, last_ages(indicators), random)
+        units, _ = ends_of_specimens(ways, of_runs, indicators.runs.units, indicators.runs.last, random)
         order = joint_order(ways, of_runs, random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, order, random)), axis=1)
         least = Earliest.of_first([way.earliest for way in ways])
@@ -250,10 +246,11 @@ def _key(each: Indicator) -> tuple[str, bytes]:
     return each.name, each.value.tobytes() + each.error.tobytes()
 
 
-def _coldest(campaign: Campaign, machine: Machine) -> float | None:
-    """The coldest start as the failure modes take it, K."""
-    ends = load_cases(machine, read_runs_of(campaign, machine.rest))
-    return None if ends is None else ends[0].temperature
+def _refuse_unchangeable(machine: Machine) -> None:
+    if machine.limits.motor_torque is None and not _depends_on_duty(machine):
+        raise ParameterError(
+            "there are no other operating conditions to compare. Set motor_torque in [limits]"
+        )
 
 
 def _shares(use: Use) -> list[UseEnd]:
@@ -280,14 +277,13 @@ def _depends_on_duty(machine: Machine) -> bool:
 
 
 def _in_use(
-    campaign: Campaign, machine: Machine, stated: Indicators, coldest: float | None, duty: str
+    asked: AskedRuns, machine: Machine, stated: Indicators, coldest: float | None, duty: str
 ) -> Indicators:
     """The indicators in another use; those that do not depend on it as they are."""
     points = machine.points
     if duty != AS_STATED:
         points = tuple(replace(point, share=float(point.name == duty)) for point in points)
-    life = machine.life if coldest is None else replace(machine.life, coldest=coldest)
-    other = indicators_of(campaign, replace(machine, life=life, points=points), signs=False)
+    other = asked.indicators(replace(machine, points=points), coldest=coldest, signs=False)
     names = {each.name for each in other.each}
     kept = tuple(each for each in stated.each if each.name not in names)
     return replace(other, each=(*other.each, *kept))

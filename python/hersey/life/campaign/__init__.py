@@ -12,6 +12,7 @@ adding         which runs are new, there already, changed or under another speci
 events         maintenance of specimens, as the file keeps it
 table          a table of runs: log, specimen and age in each row
 checks         whether files, ages and fits are as they should be
+kept_reads     what was read, kept until somebody changes the file
 listing        the runs as a table, and the specimens as text
 diagnosed      the runs as `life.diagnostics` compares them
 dwells         the dwells of all runs, as a table or as numbers

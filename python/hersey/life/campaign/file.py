@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -17,6 +18,7 @@ from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
+from hersey.life.campaign.kept_reads import KeptReads
 from hersey.life.campaign.listing import no_run, overview, runs_of
 from hersey.life.campaign.store import PATIENCE, open_store, refuse_no_place, sqlite_errors, transaction
 from hersey.life.maintenance import Event, kind_of
@@ -44,7 +46,7 @@ class Campaign:
         """Take an open file: see `open` and `create`."""
         self.path, self._database = path, database
         self._home = path.absolute().parent
-        self._read: dict[str, tuple[tuple[int, int], Any]] = {}
+        self._kept = KeptReads(path, database)
 
     @classmethod
     def create(cls, path: str | Path, *, wait: float = PATIENCE) -> Campaign:
@@ -220,8 +222,10 @@ class Campaign:
         ParameterError
             If there is no such specimen.
         """
-        with sqlite_errors(self.path):
-            return runs_of(self._database, self.path, unit)
+        listed: pl.DataFrame = self._kept.read(
+            f"runs of {unit}", lambda _: runs_of(self._database, self.path, unit)
+        )
+        return listed.clone()  # whoever asks may change it
 
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run as they were added; rows of the log are not kept.
@@ -248,16 +252,18 @@ class Campaign:
 
         Runs with the same no-load torque share one object.
         """
+        return dict(self._kept.read("drives", self._drives, runs))
+
+    def _drives(self, runs: Collection[int] | None) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
         from hersey.life.campaign.conversion import drive_of
 
-        with sqlite_errors(self.path):
-            rows = rows_of(self._database, "SELECT id, reduction FROM runs", "id", runs)
-            same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
-            found = {}
-            for number, reduction in rows:
-                with self._naming(number, "reduction"):
-                    found[number] = drive_of(reduction, same)
-            return found
+        rows = rows_of(self._database, "SELECT id, reduction FROM runs", "id", runs)
+        same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
+        found = {}
+        for number, reduction in rows:
+            with self._naming(number, "reduction"):
+                found[number] = drive_of(reduction, same)
+        return found
 
     @contextmanager
     def _naming(self, run: int, column: str) -> Iterator[None]:
@@ -307,16 +313,15 @@ class Campaign:
         The age is in `age_unit`; its column, and those of the dwells, carry their units. ``rest`` is the
         no-load torque that was subtracted, or 0.
         """
-        every: pl.DataFrame = self._unless_changed("dwells", self._dwells)
+        every: pl.DataFrame = self._kept.read("dwells", self._dwells)
         return every.clone()  # whoever asks may change it
 
-    def _dwells(self) -> pl.DataFrame:
+    def _dwells(self, _: None) -> pl.DataFrame:
         from hersey.life.campaign.dwells import dwells_of
 
         rests = {run: rest for run, (rest, _) in self.drives().items()}
-        with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path)
-            return dwells_of(self._database, self.runs(), rests, self.age_unit)
+        self._refuse_unsound_dwells()
+        return dwells_of(self._database, self.runs(), rests, self.age_unit)
 
     def measured(self, runs: Collection[int] | None = None) -> tuple[IntArray, FloatArray]:
         """Return the numbers of every dwell, of all runs or of ``runs``, for computations on torque.
@@ -326,22 +331,12 @@ class Campaign:
         """
         from hersey.life.campaign.dwells import measured_of
 
-        def read() -> tuple[IntArray, FloatArray]:
-            with sqlite_errors(self.path):
-                refuse_unsound_dwells(self._database, self.path, runs)
-                return measured_of(self._database, runs)
-
-        of_run, table = read() if runs is not None else self._unless_changed("measured", read)
+        self._refuse_unsound_dwells(runs)
+        of_run, table = self._kept.read("measured", partial(measured_of, self._database), runs)
         return of_run.copy(), table.copy()
 
-    def _unless_changed(self, what: str, read: Callable[[], Any]) -> Any:
-        """Return what was read before, if nobody has changed the file since."""
-        with sqlite_errors(self.path):
-            version = self._database.execute("PRAGMA data_version").fetchone()[0]
-        state = version, self._database.total_changes
-        if what not in self._read or self._read[what][0] != state:
-            self._read[what] = state, read()
-        return self._read[what][1]
+    def _refuse_unsound_dwells(self, runs: Collection[int] | None = None) -> None:
+        self._kept.read("sound", partial(refuse_unsound_dwells, self._database, self.path), runs)
 
     def export(self, suffix: str) -> bytes:
         """Return `dwells` as the bytes of a ``.parquet`` or ``.csv`` file.
@@ -359,8 +354,8 @@ class Campaign:
 
     def check(self, progress: Callable[[int, int], None] | None = None) -> CampaignCheck:
         """Check the file, that each log exists and is unchanged, the ages, the fits, and each run."""
+        self._refuse_unsound_dwells()
         with sqlite_errors(self.path):
-            refuse_unsound_dwells(self._database, self.path)
             found = check(self._database, self._home, progress)
         diagnosis = self.diagnose()
         return replace(found, warnings=(*found.warnings, *diagnosis.warnings), each=diagnosis.each)
@@ -379,7 +374,9 @@ class Campaign:
 
     def summary(self) -> str:
         """Return an overview and one line per specimen."""
-        return overview(self.path.name, self.runs(), self.events(), self.age_unit)
+        events, age_unit = self.events(), self.age_unit
+        with sqlite_errors(self.path):
+            return overview(self._database, self.path.name, events, age_unit)
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""

@@ -46,23 +46,18 @@ def no_run(path: Path, run: int) -> ParameterError:
     return ParameterError(f"{path.name} has no run {run}", remedy=f"list them with: {way}")
 
 
-def overview(name: str, runs: pl.DataFrame, events: list[Event], age_unit: str) -> str:
+def overview(database: sqlite3.Connection, name: str, events: list[Event], age_unit: str) -> str:
     """Return how many runs and specimens there are, and a line per specimen with its maintenance."""
-    import polars as pl
-
-    specimens = runs.group_by("unit", maintain_order=True).agg(
-        count=pl.len(),
-        first=pl.col("age").first(),
-        last=pl.col("age").last(),
-        dwells=pl.col("dwells").sum(),
-        failed=(pl.col("no_fit") != "").sum(),
-    )
+    specimens = database.execute(
+        "SELECT unit, count(*), min(age), max(age), sum(dwells), sum(no_fit != '') FROM runs "
+        "GROUP BY unit ORDER BY unit"
+    ).fetchall()
     done: dict[str, list[str]] = {}
     for each in events:
         done.setdefault(each.unit, []).append(f"  {each.kind} at {each.age}")
-    plural = "s" * (specimens.height != 1)
-    lines = [f"{name}: {runs.height} runs of {specimens.height} specimen{plural}"]
-    for unit, count, start, end, dwells, failed in specimens.iter_rows():
+    plural = "s" * (len(specimens) != 1)
+    lines = [f"{name}: {sum(row[1] for row in specimens)} runs of {len(specimens)} specimen{plural}"]
+    for unit, count, start, end, dwells, failed in specimens:
         first, last = Age(start, age_unit), Age(end, age_unit)
         ages = f"at {first}" if first == last else f"{first.value:.10g} to {last}"
         text = f"{unit}: {count} run{'s' * (count > 1)}, {ages}, {dwells} dwells"

@@ -10,11 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from hersey.arrays import BoolArray, FloatArray, IntArray
 from hersey.life.diagnostics.compared import Compared
-from hersey.life.diagnostics.trends import Rows, left_out
+from hersey.life.diagnostics.trends import Rows, left_out, log_density
 
 #: Kinds of slips: what was done, in two or three words.
 EXCHANGED = "logs exchanged"
@@ -56,6 +55,8 @@ _LEVEL, _SHAPES = 0.5, (0.2, 0.2, 0.08, 0.08, 0.08)
 _PAIRED, _TRIED = 300, 24
 #: Scatter of last ages of specimens, and of their levels at least, logarithms.
 _OF_LAST, _OF_LEVELS = 0.4, 0.15
+#: Degrees of freedom of their law.
+_FREEDOM = 4.0
 #: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how
 #: much more the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
@@ -199,6 +200,11 @@ def _sequence(at: Compared, times: float) -> FloatArray:
     return np.asarray(at.density((white**2).sum(axis=1), logs) * rows.given)
 
 
+def _log_student(off: FloatArray, scale: float) -> FloatArray:
+    """Log density of deviations of a scale by a law with heavy tails."""
+    return log_density((off / scale) ** 2, np.asarray(2.0 * np.log(scale)), 1, _FREEDOM)
+
+
 def _schedule(at: Compared, last: FloatArray, ages: SharedAges, factor: float) -> FloatArray:
     """What the ages of the others say of a factor: the usual last age, and ages that are theirs."""
     usual = (
@@ -207,8 +213,7 @@ def _schedule(at: Compared, last: FloatArray, ages: SharedAges, factor: float) -
         else np.median(last)
     )
     off = np.log(np.maximum(last, 1e-12) / np.maximum(usual, 1e-12))
-    law = stats.t(4, scale=_OF_LAST)
-    gain = law.logpdf(off - np.log(factor)) - law.logpdf(off)
+    gain = _log_student(off - np.log(factor), _OF_LAST) - _log_student(off, _OF_LAST)
     # A specimen seen several times in a small part of the usual age is no new one.
     seen = np.count_nonzero(at.rows.given & (at.rows.age > 0.0), axis=1)
     gain = gain * np.clip(seen / 2.0, 1.0, _SEEN)
@@ -295,8 +300,9 @@ def _within(age: FloatArray, others: FloatArray, rows: Rows, row: int) -> FloatA
     shared = np.array([float(f"{a:.6g}") in everywhere for a in age.tolist()])
     again = np.array([np.any(np.abs(others - a) < 1e-9) for a in age.tolist()])
     top = max(float(others.max(initial=0.0)), 1e-12)
-    law = stats.t(4, scale=_OF_LAST)
-    out = np.where(age > 1.5 * top, law.logpdf(np.log(np.maximum(age, 1e-12) / top)) - law.logpdf(0.0), 0.0)
+    late = np.log(np.maximum(age, 1e-12) / top)
+    off = _log_student(late, _OF_LAST) - _log_student(np.zeros(()), _OF_LAST)
+    out = np.where(age > 1.5 * top, off, 0.0)
     return (
         _COINCIDES * shared
         - 3.0 * again
@@ -311,7 +317,7 @@ def _scheduled(age: FloatArray, rows: Rows, row: int) -> FloatArray:
     other = np.arange(len(rows.age)) != row
     ages = rows.age[other][rows.given[other]]
     scale = _ABOUT * (_least_gap(rows, other) or 1.0)
-    near = stats.norm.pdf(age[:, None], ages, scale).mean(axis=1)
+    near = np.exp(-0.5 * ((age[:, None] - ages) / scale) ** 2).mean(axis=1) / (scale * np.sqrt(2.0 * np.pi))
     return np.asarray(np.log((1.0 - _UNPLANNED) * near + _UNPLANNED / max(float(ages.max()), scale)))
 
 
@@ -358,8 +364,9 @@ def torques_scaled(at: Compared) -> list[Slip]:
     for i in range(level.size):
         others = np.delete(level, i)
         middle = np.median(others)
-        law = stats.t(4, scale=max(1.4826 * float(np.median(np.abs(others - middle))), _OF_LEVELS))
-        gain = law.logpdf(level[i] - middle - steps) - law.logpdf(level[i] - middle) - np.log(steps.size)
+        scale = max(1.4826 * float(np.median(np.abs(others - middle))), _OF_LEVELS)
+        gain = _log_student(level[i] - middle - steps, scale) - _log_student(level[i] - middle, scale)
+        gain -= np.log(steps.size)
         best = int(gain.argmax())
         runs = tuple(np.flatnonzero(rows.row == i).tolist())
         found.append(Slip(TORQUES, runs, float(gain[best]), TORQUE_FACTORS[best]))

@@ -164,16 +164,23 @@ class Layers:
         quantile: FloatArray = np.asarray(student_quantile(0.5 + level / 2.0, self.freedom))
         away = self.place - self.best[:, None]
         root = np.maximum.accumulate(np.sqrt(np.maximum(self.deviance, 0.0)) * np.sign(away), axis=1)
-        best, low, high = (np.empty_like(self.best) for _ in range(3))
-        for i in range(len(best)):
-            moved = self.place[i] + shift[i]
-            best[i] = np.interp(self.best[i], self.place[i], moved)
-            more = quantile[i] * np.interp(self.best[i], self.place[i], extra[i])
-            below = np.interp(-quantile[i], root[i], moved, left=-np.inf)
-            above = np.interp(quantile[i], root[i], moved, right=np.inf)
-            low[i] = best[i] - np.hypot(best[i] - below, more)
-            high[i] = best[i] + np.hypot(above - best[i], more)
-        return best, low, high
+        moved = self.place + shift
+        best = interpolated(self.best, self.place, moved)
+        more = quantile * interpolated(self.best, self.place, extra)
+        below = np.where(-quantile < root[:, 0], -np.inf, interpolated(-quantile, root, moved))
+        above = np.where(quantile > root[:, -1], np.inf, interpolated(quantile, root, moved))
+        return best, best - np.hypot(best - below, more), best + np.hypot(above - best, more)
+
+
+def interpolated(at: FloatArray, places: FloatArray, values: FloatArray) -> FloatArray:
+    """Return `np.interp` of each row: at (rows,), places, ascending, and values (rows, places)."""
+    rows, last = np.arange(len(at)), places.shape[1] - 1
+    first = np.clip((places <= at[:, None]).sum(axis=1) - 1, 0, last)
+    then = np.minimum(first + 1, last)
+    low, low_value = places[rows, first], values[rows, first]
+    width = places[rows, then] - low
+    slope = (values[rows, then] - low_value) / np.where(width > 0.0, width, 1.0)
+    return np.asarray(low_value + slope * np.maximum(at - low, 0.0))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
 from hersey.errors import InsufficientDataError
 from hersey.life.film.filled_dwells import FilledDwells, filled_dwells
-from hersey.life.film.layer import LEAST_LAMBDA, LayerFit, Layers
+from hersey.life.film.layer import LEAST_LAMBDA, LayerFit, Layers, interpolated
 from hersey.life.film.shares import ByShare, by_share
 from hersey.life.film.starved_drag import Flooded, cubic, film_of, flooded
 from hersey.life.growth.limit_ages import DEVIATIONS
@@ -151,13 +151,11 @@ class FilmOfRuns:
 
 def _viscosity(found: Layers) -> Ends:
     """Most likely ln of the factor on viscosity, and its interval."""
-    value, error = np.empty(len(found.best)), np.empty(len(found.best))
-    for i, place in enumerate(found.place):
-        weight = np.exp(-0.5 * found.deviance[i]) * np.gradient(place)
-        weight /= weight.sum()
-        value[i] = np.interp(found.best[i], place, found.viscosity[i])
-        away = found.viscosity[i] - value[i]
-        error[i] = np.sqrt(weight @ (away**2 + found.viscosity_error[i] ** 2))
+    weight = np.exp(-0.5 * found.deviance) * np.gradient(found.place, axis=1)
+    weight /= weight.sum(axis=1, keepdims=True)
+    value = interpolated(found.best, found.place, found.viscosity)
+    away = found.viscosity - value[:, None]
+    error = np.sqrt((weight * (away**2 + found.viscosity_error**2)).sum(axis=1))
     return value, value - DEVIATIONS * error, value + DEVIATIONS * error
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -53,13 +53,13 @@ class Draws:
             found.append(np.concatenate(parts))
         return found[0], found[1]
 
-    def curves(self, ages: FloatArray) -> FloatArray:
-        """Return logarithms of the indicator of each specimen, (draws, specimens, ages)."""
-        powers, drawn = self.powers()[0], []
+    def curves(self, ages: FloatArray, places: Sequence[int]) -> FloatArray:
+        """Return logarithms of the indicator of specimens at these places, (draws, specimens, ages)."""
+        powers, drawn = self.powers()[0][:, places], []
         for units, own in _each(self.of_specimens):
-            by_law = later(ages, self.last[:, None], 1.0 / powers[own, :, None])
-            grown = units.law.log_growth(units.size[..., None], by_law, units.shape[..., None])
-            drawn.append(units.level[..., None] + grown)
+            by_law = later(ages, self.last[places, None], 1.0 / powers[own, :, None])
+            grown = units.law.log_growth(units.size[:, places, None], by_law, units.shape[..., None])
+            drawn.append(units.level[:, places, None] + grown)
         return np.concatenate(drawn)
 
     def curve(self, unit: int, ages: FloatArray) -> FloatArray:

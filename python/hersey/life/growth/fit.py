@@ -144,25 +144,31 @@ class Growth(Result):
         names = ("law", "weight (1)", "parameter", "value (given)", "low (given)", "high (given)")
         return pl.DataFrame(rows, schema=names, orient="row")
 
-    def at(self, age: ArrayLike) -> GrowthCurves:
+    def at(self, age: ArrayLike, *, units: Sequence[str] | None = None) -> GrowthCurves:
         """Return the indicator of each specimen at ages, without the scatter of runs.
 
         Parameters
         ----------
         age
             One or more ages, in the unit of the data.
+        units
+            Specimens. Default: all.
 
         Raises
         ------
         ParameterError
-            If an age is negative or not a number.
+            If an age is negative or not a number, or a specimen has no runs here.
         """
         ages = np.atleast_1d(numbers_of("age", age)).ravel()
         if not (np.isfinite(ages) & (ages >= 0.0)).all():
             raise ParameterError("an age is negative or not a number. Ages count from new")
-        drawn = self._draws.curves(ages / self._scale[0])
+        names, place = tuple(self.units if units is None else units), {u: i for i, u in enumerate(self.units)}
+        for name in names:
+            if name not in place:
+                raise ParameterError(f"'{name}' has no runs here. Name any of: {', '.join(self.units[:8])}")
+        drawn = self._draws.curves(ages / self._scale[0], [place[name] for name in names])
         low, median, high = np.exp(quantiles(drawn) + self._scale[1])
-        return GrowthCurves(self.units, ages, median, low, high)
+        return GrowthCurves(names, ages, median, low, high)
 
     def reaches(self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False) -> AgesAtLimit:
         """Return the ages at which each specimen, and 10 % and 50 % of new specimens, reach a limit.

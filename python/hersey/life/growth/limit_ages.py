@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -183,15 +183,31 @@ def age_at_limit(
     times the age followed since the specimen ``begun`` to age, and has no end where the age is beyond `FAR`
     times that. Of the population, and of a specimen not seen since then, the age followed is ``greatest``.
     """
-    never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
-    age = interval(ages)
-    if math.isinf(age.value):
-        age = Interval(age.value, min(age.low, earliest), age.high)
-    seen = last - begun if last > begun else greatest
-    if seen > 0.0:
-        high = math.inf if age.value > begun + FAR * seen else age.high
-        age = Interval(age.value, min(age.low, begun + SURE * seen), high)
-    return AgeAtLimit(name, age, never, last, passed, begun)
+    seen, soonest, since = (np.array([each], dtype=float) for each in (last, earliest, begun))
+    found = ages_of_each([name], ages[:, None], seen, soonest, since, greatest)[0]
+    return replace(found, last=last)  # the same NaN: results are compared
+
+
+def ages_of_each(
+    names: Iterable[str],
+    ages: FloatArray,
+    last: FloatArray,
+    earliest: FloatArray,
+    begun: FloatArray,
+    greatest: float,
+) -> list[AgeAtLimit]:
+    """Return `age_at_limit` of each specimen; ``ages`` are (draws, specimens), the others (specimens,)."""
+    never, passed = np.isinf(ages).mean(axis=0), (ages <= last).mean(axis=0)
+    low, age, high = quantiles(ages)
+    low = np.where(np.isinf(age), np.minimum(low, earliest), low)
+    seen = np.where(last > begun, last - begun, greatest)
+    low = np.where(seen > 0.0, np.minimum(low, begun + SURE * seen), low)
+    high = np.where((seen > 0.0) & (age > begun + FAR * seen), math.inf, high)
+    columns = (each.tolist() for each in (age, low, high, never, last, passed, begun))
+    return [
+        AgeAtLimit(name, Interval(*numbers[:3]), *numbers[3:])
+        for name, *numbers in zip(names, *columns, strict=True)
+    ]
 
 
 def share_of_specimens(
@@ -280,10 +296,8 @@ def ages_at_limit(
     least = earliest or Earliest.unknown(len(followed.last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
     last, begun, greatest = followed
-    known = [
-        age_at_limit(name, own.known[:, i], seen, float(least.units[i]), greatest, begun[name])
-        for i, (name, seen) in enumerate(last.items())
-    ]
+    seen, since = (np.array([of[name] for name in last], dtype=float) for of in (last, begun))
+    known = ages_of_each(last, own.known, seen, least.units, since, greatest)
     b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, greatest)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 

@@ -127,21 +127,21 @@ def _over_nodes(
 ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray, FloatArray]]:
     """Yield log density of each specimen's values and size at nodes round its mode, the nodes, and its width.
 
-    And the weight of the values. So many draws at a time as `_many` says.
+    And the weight of the values. So many draws at a time as `_many` says, times the nodes: only the values
+    of all runs at all nodes take much room.
     """
     many = _many(points, nodes)
-    for i in range(0, len(shared), many * nodes.size):  # a mode takes a number where its nodes take many
+    for i in range(0, len(shared), many * nodes.size):
         block = shared[i : i + many * nodes.size]
-        weights = weights_of(points, block)
-        mode, widths = modes(law, points, block, weights, start, many)
-        for j in range(0, len(block), many):
-            part, weight, width = block[j : j + many], weights[:, j : j + many], widths[j : j + many]
-            size = mode[j : j + many, :, None] + width[..., None] * nodes
-            square, _, _ = _fit_of(law, points, part, weight, size)
-            spread = part[:, 4][:, None, None]
-            away = (size - part[:, 3][:, None, None]) * np.exp(-spread)
-            density = -0.5 * (square + away**2 + math.log(2.0 * math.pi)) - spread
-            yield density + _constants(points, part, weight)[..., None], size, width, weight
+        weight = weights_of(points, block)
+        mode, width = modes(law, points, block, weight, start, many)
+        size = mode[..., None] + width[..., None] * nodes
+        parts = [slice(j, j + many) for j in range(0, len(block), many)]
+        square = [_fit_of(law, points, block[own], weight[:, own], size[own])[0] for own in parts]
+        spread = block[:, 4][:, None, None]
+        away = (size - block[:, 3][:, None, None]) * np.exp(-spread)
+        density = -0.5 * (np.concatenate(square) + away**2 + math.log(2.0 * math.pi)) - spread
+        yield density + _constants(points, block, weight)[..., None], size, width, weight
 
 
 def _many(points: Points, nodes: FloatArray) -> int:
@@ -170,6 +170,7 @@ def drawn_specimens(
 ) -> Specimens:
     """Return one draw of all specimens, given their own values, for each draw of what they share."""
     many = _many(points, _FINE)
+    at_once = many * _FINE.size
     over = _over_nodes(law, points, shared, sizes_at_mode, _FINE) if law.grows else None
     levels, sizes = [], []
     for i in range(0, len(shared), many):
@@ -178,8 +179,11 @@ def drawn_specimens(
         if over is None:
             weight = weights_of(points, part)
         else:
-            density, nodes, _, weight = next(over)
-            size = _drawn(density, nodes, random.random(size.shape))
+            if i % at_once == 0:
+                density, nodes, _, weights = next(over)
+            own = slice(i % at_once, i % at_once + many)
+            weight = weights[:, own]
+            size = _drawn(density[own], nodes[own], random.random(size.shape))
         _, first, total = _fit_of(law, points, part, weight, size[..., None])
         normals = random.standard_normal(size.shape)
         levels.append(part[:, :1] + first[..., 0] / total[..., 0] + normals / np.sqrt(total[..., 0]))

@@ -64,6 +64,12 @@ class AtStates:
     kelvin: FloatArray
     curves: tuple[Curves, ...] = ()
 
+    def of_states(self, places: Sequence[int]) -> AtStates:
+        """Return the same of some of the states."""
+        names = ("belt", "belt_error", "drive", "drive_error", "outside", "factor", "kelvin")
+        arrays = {name: getattr(self, name)[:, places] for name in names}
+        return replace(self, states=tuple(self.states[place] for place in places), **arrays)
+
     def warnings(self, state: int) -> tuple[Warning, ...]:
         """Return what the state is, and which runs do not show it or only beyond their dwells."""
         known = np.isfinite(self.drive[:, state])

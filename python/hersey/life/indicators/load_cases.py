@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from hersey.schema.warning import Warning
@@ -11,6 +11,9 @@ from hersey.schema.warning import Warning
 if TYPE_CHECKING:
     from hersey.life.indicators.run_dwells import CampaignRuns
     from hersey.machine import Machine
+
+#: Coldest starts that are tried beside the one as it is, K.
+OTHER_STARTS = (-10.0, 10.0)
 
 
 @dataclass(frozen=True)
@@ -72,3 +75,11 @@ def load_cases(machine: Machine, runs: CampaignRuns) -> tuple[State, State] | No
         State("cold and fast", fastest, coldest, ", ".join(filter(None, (fast_from, cold_from)))),
         State("hot and slow", slowest, hottest, ", ".join(filter(None, (slow_from, hot_from)))),
     )
+
+
+def cold_starts(cold: State) -> tuple[State, ...]:
+    """Return the cold and fast corner at other coldest starts; empty where no run recorded a temperature."""
+    kelvin = cold.temperature
+    if kelvin is None:
+        return ()
+    return tuple(replace(cold, temperature=kelvin + beside) for beside in OTHER_STARTS)

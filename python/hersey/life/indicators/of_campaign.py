@@ -18,7 +18,7 @@ from hersey.life.age import one_of
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators
 from hersey.life.indicators.at_states import AtStates, at_states
 from hersey.life.indicators.gear_fatigue import gear_fatigue, running_time, shares_of
-from hersey.life.indicators.load_cases import State, load_cases, point_states
+from hersey.life.indicators.load_cases import State, cold_starts, load_cases, point_states
 from hersey.life.indicators.run_dwells import CampaignRuns, read_runs_of
 from hersey.life.indicators.sticking import DRAWN_RUNS, folds, static_force, stick_speed_at, transitions
 from hersey.schema.warning import Warning
@@ -53,6 +53,17 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
     ParameterError, UnitError
         If [gear] has no S-N curve, or an age in a unit other than the campaign's.
     """
+    return asked_of(campaign, machine).indicators(machine, signs=signs)
+
+
+def asked_of(campaign: Campaign, machine: Machine) -> AskedRuns:
+    """Return what the runs say of the states of a machine, from which its indicators follow.
+
+    Raises
+    ------
+    InsufficientDataError
+        If the campaign has no run with enough dwells.
+    """
     runs = read_runs_of(campaign, machine.rest)
     ends = load_cases(machine, runs)
     if ends is None:
@@ -66,19 +77,45 @@ def indicators_of(campaign: Campaign, machine: Machine, *, signs: bool = True) -
     still = State("at rest, hot", stick_speed, hottest, "stick speed")
     states = (*ends, still, *point_states(machine))
     temperatures = tuple(dict.fromkeys(point.temperature for point in machine.points))
-    estimates = at_states(runs, states, temperatures, drawn=DRAWN_RUNS)
-    asked = _Asked(estimates, machine, _torque_gain(machine, runs))
-    found: list[_Found] = [
-        asked.motor_torque(),
-        asked.grip(),
-        asked.stick_slip(signs=signs),
-        gear_fatigue(estimates, machine, _COLD, _POINTS, asked.gain),
-        asked.continuous_torque(),
-        asked.energy(),
-    ]
-    each = tuple(indicator for indicators, _ in found for indicator in indicators)
-    warnings = (warning for _, of_mode in found for warning in of_mode)
-    return Indicators(runs.runs, each, (*warnings, *runs.warnings))
+    asked = (*states, *cold_starts(ends[_COLD]))
+    return AskedRuns(at_states(runs, asked, temperatures, drawn=DRAWN_RUNS), len(states))
+
+
+@dataclass(frozen=True, repr=False)
+class AskedRuns:
+    """What the runs of a campaign say of so many states of a machine, and of other coldest starts."""
+
+    estimates: AtStates
+    number: int
+
+    @property
+    def coldest(self) -> float | None:
+        """Temperature of the coldest start, K; None where no run recorded any."""
+        return self.estimates.states[_COLD].temperature
+
+    @property
+    def starts(self) -> dict[float, int]:
+        """Places of the cold and fast corner by the temperature of the coldest start, K, ascending."""
+        states = self.estimates.states
+        colds = {states[k].temperature: k for k in (_COLD, *range(self.number, len(states)))}
+        return {kelvin: colds[kelvin] for kelvin in sorted(each for each in colds if each is not None)}
+
+    def indicators(self, machine: Machine, *, coldest: float | None = None, signs: bool = True) -> Indicators:
+        """Return the indicators of a machine of the same states, at one of `starts` (default: as stated)."""
+        cold = _COLD if coldest is None else self.starts[coldest]
+        estimates = self.estimates.of_states([cold, *range(_SLOW, self.number)])
+        asked = _Asked(estimates, machine, _torque_gain(machine, estimates.runs))
+        found: list[_Found] = [
+            asked.motor_torque(),
+            asked.grip(),
+            asked.stick_slip(signs=signs),
+            gear_fatigue(estimates, machine, _COLD, _POINTS, asked.gain),
+            asked.continuous_torque(),
+            asked.energy(),
+        ]
+        each = tuple(indicator for indicators, _ in found for indicator in indicators)
+        warnings = (warning for _, of_mode in found for warning in of_mode)
+        return Indicators(estimates.runs.runs, each, (*warnings, *estimates.runs.warnings))
 
 
 def _torque_gain(machine: Machine, runs: CampaignRuns) -> float:

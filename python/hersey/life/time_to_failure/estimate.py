@@ -40,7 +40,7 @@ from hersey.life.time_to_failure.joined import correlations
 from hersey.life.time_to_failure.next_run import NextRun, next_runs
 from hersey.life.time_to_failure.questions import questions_of
 from hersey.life.time_to_failure.unsure import unsure
-from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way, last_ages
+from hersey.life.time_to_failure.way import FittedWay, Mode, fitted_way
 from hersey.result import Means, Record, Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -323,7 +323,7 @@ def time_to_failure(
         raise InsufficientDataError(f"no failure mode can be judged. {why}")
     random = np.random.default_rng([seed, 2])
     of_runs = correlations([each.residuals for each in ending])
-    names, last = indicators.runs.units, last_ages(indicators)
+    names, last = indicators.runs.units, indicators.runs.last
     units, picks = ends_of_specimens(ending, of_runs, names, last, random)
     order = joint_order(ending, of_runs, random)
     new = np.stack(list(ages_of_new(ending, order, random)))

@@ -5,20 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.growth.limit_ages import AgeAtLimit, age_at_limit
-from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of
+from hersey.life.growth.limit_ages import AgeAtLimit, ages_of_each
+from hersey.life.time_to_failure.joined import correlations, order_by, ranks_of, ranks_of_each
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
 
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9
-#: A way is named from this probability on, and where its age is so little later than the first.
-MENTIONED, NEAR = 0.05, 1.25
+#: A way is named from this probability to be first on, and from a probability to come up to so much later.
+MENTIONED, CLOSE, NEAR = 0.05, 0.2, 1.25
 #: Ways that a table names: the fewest that hold so much of that probability.
 LIKELY = 0.8
 #: Stands for the failure mode of a specimen that no mode can be expected to end.
@@ -37,8 +37,9 @@ class SpecimenEnd(Record):
         dict[str, float], Means("probability of each mode to come first")
     ]  #: probability of each way to be the first; the rest is that none comes
     near: Annotated[
-        tuple[str, ...], Means("modes whose own age is at most 25 % later than the first")
-    ]  #: ways whose own age, the middle one, is up to 25 % later than the first
+        tuple[str, ...],
+        Means("modes that come at most 25 % later than the first with a probability of 20 % or more"),
+    ]  #: ways that may come up to 25 % later than the first
 
     @property
     def named(self) -> tuple[str, ...]:
@@ -86,11 +87,18 @@ class SpecimenEnd(Record):
         text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
         expected = math.isfinite(self.age.age.value)
         behind = [name for name in self.named if name not in likely and expected]
-        return text + (f", close behind {' and '.join(behind)}" if behind else "")
+        return text + (f", perhaps soon followed by {' and '.join(behind)}" if behind else "")
 
     def __str__(self) -> str:
         """Return it in words."""
         return str(self.age) if self.ways == _NONE else f"{self.age} by {self.ways}"
+
+
+class Picks(NamedTuple):
+    """Which draws of each mode stand together for a specimen, and the first age in each draw."""
+
+    order: IntArray  #: (modes, draws, specimens)
+    first: FloatArray  #: (draws, specimens)
 
 
 def ends_of_specimens(
@@ -99,32 +107,34 @@ def ends_of_specimens(
     names: Sequence[str],
     last: dict[str, float],
     random: np.random.Generator,
-) -> tuple[tuple[SpecimenEnd, ...], list[tuple[IntArray, FloatArray]]]:
-    """The first end of each specimen; and which draws of each way stand together, with their first ages."""
-    found, picks = [], []
+) -> tuple[tuple[SpecimenEnd, ...], Picks]:
+    """The first end of each specimen, and of which draws it is made."""
+    ranks = ranks_of_each(len(names), len(ending[0].ages), of_runs, random)
+    order = np.stack([np.take_along_axis(e.order, own, axis=0) for e, own in zip(ending, ranks, strict=True)])
+    joint = np.stack([np.take_along_axis(e.ages, own, axis=0) for e, own in zip(ending, order, strict=True)])
+    first = joint.min(axis=0)
+    seen = np.array([last[name] for name in names])
+    begun = np.max([[each.followed.begun[name] for name in names] for each in ending], axis=0)
+    least = np.min([each.earliest.units for each in ending], axis=0)
     greatest = min(each.followed.greatest for each in ending)
-    for i, name in enumerate(names):
-        keys = np.stack([each.ages[:, i] for each in ending], axis=1)
-        own = np.stack([each.order[:, i] for each in ending], axis=1)
-        order = np.take_along_axis(own, ranks_of(len(keys), of_runs, random), axis=0)
-        joint = np.take_along_axis(keys, order, axis=0)
-        first = joint.min(axis=1)
-        shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
-        least = min(float(each.earliest.units[i]) for each in ending)
-        begun = max(each.followed.begun[name] for each in ending)
-        end = age_at_limit(name, first, last[name], least, greatest, begun)
-        middle = {e.mode.name: float(e.medians[i]) for e in ending}
-        near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
-        found.append(SpecimenEnd(name, end, shares, near))
-        picks.append((order, first))
-    return tuple(found), picks
+    ends = ages_of_each(names, first, seen, least, begun, greatest)
+    ways = [each.mode.name for each in ending]
+    soon = np.isfinite(first) & (joint <= NEAR * first)
+    found = []
+    for end, shares, near in zip(ends, _firsts(joint).T.tolist(), soon.mean(axis=1).T.tolist(), strict=True):
+        close = tuple(way for way, share in zip(ways, near, strict=True) if share >= CLOSE)
+        found.append(SpecimenEnd(end.unit, end, dict(zip(ways, shares, strict=True)), close))
+    return tuple(found), Picks(order, first)
 
 
 def _firsts(ages: FloatArray) -> FloatArray:
-    """Share in which each row is the least of all, ties shared; less than 1 in all where none comes."""
+    """Share of draws in which each mode is the least of all, (modes, specimens), ties shared.
+
+    ``ages`` are (modes, draws, specimens); the shares are less than 1 in all where none comes.
+    """
     least = (ages == ages.min(axis=0)) & np.isfinite(ages)
     count = np.maximum(least.sum(axis=0), 1)
-    return np.asarray((least / count).reshape(len(ages), -1).mean(axis=1))
+    return np.asarray((least / count).mean(axis=1))
 
 
 def joint_order(ending: Sequence[FittedWay], of_runs: FloatArray, random: np.random.Generator) -> IntArray:

@@ -37,8 +37,19 @@ def correlations(columns: Sequence[FloatArray]) -> FloatArray:
 
 def ranks_of(count: int, correlation: FloatArray, random: np.random.Generator) -> IntArray:
     """Return ranks of ``count`` normal draws with this correlation, one column for each of its rows."""
-    normals = random.standard_normal((count, len(correlation))) @ np.linalg.cholesky(correlation).T
-    return np.asarray(np.argsort(np.argsort(normals, axis=0), axis=0))
+    return ranks_of_each(1, count, correlation, random)[:, :, 0].T
+
+
+def ranks_of_each(
+    specimens: int, count: int, correlation: FloatArray, random: np.random.Generator
+) -> IntArray:
+    """Return `ranks_of` for each of so many specimens, (rows of the correlation, draws, specimens)."""
+    shape = specimens, count, len(correlation)
+    normals = random.standard_normal(shape) @ np.linalg.cholesky(correlation).T
+    order = np.argsort(normals.T, axis=1)
+    ranks = np.empty_like(order)
+    np.put_along_axis(ranks, order, np.arange(count)[:, None], axis=1)
+    return ranks
 
 
 def order_by(keys: FloatArray, ranks: IntArray) -> IntArray:

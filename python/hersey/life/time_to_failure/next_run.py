@@ -12,9 +12,9 @@ from typing import Annotated
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.life.growth.limit_ages import percent, rounded
-from hersey.life.time_to_failure.first import SpecimenEnd
+from hersey.life.time_to_failure.first import Picks, SpecimenEnd
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
 
@@ -116,7 +116,7 @@ def _chosen(before: float, after: FloatArray) -> int | None:
 def next_runs(
     ending: Sequence[FittedWay],
     units: Sequence[SpecimenEnd],
-    picks: Sequence[tuple[IntArray, FloatArray]],
+    picks: Picks,
     of_runs: FloatArray,
     asked: float | None,
     random: np.random.Generator,
@@ -127,7 +127,7 @@ def next_runs(
     the question is whether a specimen has failed.
     """
     goals = [each.age.last if asked is None else max(asked, each.age.last) for each in units]
-    events = [first <= goal for (_, first), goal in zip(picks, goals, strict=True)]
+    events = (picks.first <= np.array(goals)).T
     doubtful = [i for i, each in enumerate(units) if each.state != "failed" and _wrong(events[i]) > _SURE]
     doubtful.sort(key=lambda i: -_wrong(events[i]))
     found = []
@@ -139,7 +139,7 @@ def next_runs(
             continue
         values, errors = [], []
         for m in observed:
-            order, each = picks[i][0][:, m], ending[m]
+            order, each = picks.order[m, :, i], ending[m]
             value, scatter = each.drawn_values(name, ages)
             values.append(value[order])
             errors.append(np.hypot(scatter, each.error)[order])

@@ -79,14 +79,6 @@ class FittedWay:
         return np.asarray(0.5 * (self.new[:, half - 1 + odd] + self.new[:, half]))
 
 
-def last_ages(indicators: Indicators) -> dict[str, float]:
-    """Return the age at which each specimen was last seen."""
-    last: dict[str, float] = {}
-    for unit, age in zip(indicators.runs.unit, indicators.runs.age.tolist(), strict=True):
-        last[unit] = max(age, last.get(unit, 0.0))
-    return last
-
-
 def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth | None = None) -> FittedWay:
     """Return the growth of an indicator, which may be known already, and the ages at its limit.
 
@@ -110,7 +102,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         seed=seed,
     )
     row = {name: i for i, name in enumerate(growth.units)}
-    last = last_ages(indicators)
+    last = runs.last
     drawn = _drawn_ages(each, growth, row, of_runs.begun, seed)
     own = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
     grows = growth.shown if each.own_ages is None else bool(np.isfinite(own.known).mean() >= _REACHED)
