@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +13,7 @@ from scipy import special
 from hersey.arrays import FloatArray
 from hersey.life.growth.marginal import Specimens
 from hersey.life.indicator import OwnAges
+from hersey.life.maintenance import Followed
 from hersey.result import OPEN, Means, Record, Result
 from hersey.schema.warning import Warning
 
@@ -76,6 +77,9 @@ class AgeAtLimit(Record):
     passed: Annotated[
         float, Means("share of draws that have reached it by then")
     ]  #: share of draws that have reached it by then
+    begun: Annotated[
+        float, Means("age of the last maintenance after which it aged from new; 0 without any")
+    ] = 0.0  #: age from which it ages
 
     def __str__(self) -> str:
         """Return the age in words."""
@@ -87,6 +91,15 @@ class AgeAtLimit(Record):
         if self.passed >= FAILED:
             return "failed"
         return "unclear" if self.passed > RUNNING else "running"
+
+    def shown(self, times: float) -> float:
+        """Return the age after so many times the age followed since it ``begun`` to age."""
+        return self.begun + times * max(self.last - self.begun, 0.0)
+
+    @property
+    def far(self) -> bool:
+        """Whether it is beyond `FAR` times the age followed."""
+        return self.age.value > self.shown(FAR) > self.begun
 
     @property
     def outcome(self) -> str:
@@ -161,31 +174,32 @@ def age_at_limit(
     ages: FloatArray,
     last: float = math.nan,
     earliest: float = math.inf,
-    followed: float | None = None,
+    greatest: float = 0.0,
+    begun: float = 0.0,
 ) -> AgeAtLimit:
     """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages.
 
     Where most draws do not reach it, the interval begins at ``earliest`` at the latest. It begins at `SURE`
-    times the age ``followed`` (default: ``last``) at the latest, and has no end where the age is beyond `FAR`
-    times that.
+    times the age followed since the specimen ``begun`` to age, and has no end where the age is beyond `FAR`
+    times that. Of the population, and of a specimen not seen since then, the age followed is ``greatest``.
     """
     never, passed = float(np.isinf(ages).mean()), float((ages <= last).mean())
     age = interval(ages)
     if math.isinf(age.value):
         age = Interval(age.value, min(age.low, earliest), age.high)
-    seen = last if followed is None else followed
+    seen = last - begun if last > begun else greatest
     if seen > 0.0:
-        high = math.inf if age.value > FAR * seen else age.high
-        age = Interval(age.value, min(age.low, SURE * seen), high)
-    return AgeAtLimit(name, age, never, last, passed)
+        high = math.inf if age.value > begun + FAR * seen else age.high
+        age = Interval(age.value, min(age.low, begun + SURE * seen), high)
+    return AgeAtLimit(name, age, never, last, passed, begun)
 
 
 def share_of_specimens(
-    ages: FloatArray, share: float, earliest: float = math.inf, followed: float | None = None
+    ages: FloatArray, share: float, earliest: float = math.inf, followed: float = 0.0
 ) -> AgeAtLimit:
     """Age that a share of new specimens has reached, ``ages`` being sorted along the specimens."""
     name = f"B{share * 100:.0f}"
-    return age_at_limit(name, reached_by(ages, share), earliest=earliest, followed=followed)
+    return age_at_limit(name, reached_by(ages, share), earliest=earliest, greatest=followed)
 
 
 def reached_by(ages: FloatArray, share: float) -> FloatArray:
@@ -216,13 +230,14 @@ class Earliest:
             *(min(ages) for ages in zip(*((e.first, e.b10, e.b50) for e in each), strict=True)),
         )
 
-    def within_reach(self, last: FloatArray) -> Earliest:
-        """Return those that runs up to the ages ``last`` of the specimens show: up to `SURE` times that.
+    def within_reach(self, followed: Followed) -> Earliest:
+        """Return those that runs show: up to `SURE` times the age followed.
 
         Of a specimen seen only when new, up to that of all.
         """
-        most = SURE * float(last.max())
-        units = np.minimum(self.units, np.where(last > 0.0, SURE * last, most))
+        last, begun = (np.array(list(ages.values())) for ages in (followed.last, followed.begun))
+        since, most = np.maximum(last - begun, 0.0), SURE * followed.greatest
+        units = np.minimum(self.units, begun + np.where(since > 0.0, SURE * since, most))
         return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
 
     @classmethod
@@ -250,23 +265,23 @@ def ages_at_limit(
     quantity: str,
     age_unit: str,
     limit: float,
-    last: Mapping[str, float],
+    followed: Followed,
     own: OwnAges,
     warnings: tuple[Warning, ...],
     *,
     accumulates: bool = False,
     earliest: Earliest | None = None,
 ) -> AgesAtLimit:
-    """Return what draws of the ages of specimens, last seen at ``last``, and of new ones show.
+    """Return what draws of the ages of specimens, and of new ones, show.
 
     ``accumulates``: the limit is that of the integral of the quantity over age. ``earliest`` is stated of a
     quantity that does not grow.
     """
-    least = earliest or Earliest.unknown(len(last))
+    least = earliest or Earliest.unknown(len(followed.last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
-    greatest = max(last.values())
+    last, begun, greatest = followed
     known = [
-        age_at_limit(name, own.known[:, i], float(seen), float(least.units[i]), float(seen) or greatest)
+        age_at_limit(name, own.known[:, i], seen, float(least.units[i]), greatest, begun[name])
         for i, (name, seen) in enumerate(last.items())
     ]
     b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, greatest)

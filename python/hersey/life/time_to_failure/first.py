@@ -102,7 +102,7 @@ def ends_of_specimens(
 ) -> tuple[tuple[SpecimenEnd, ...], list[tuple[IntArray, FloatArray]]]:
     """The first end of each specimen; and which draws of each way stand together, with their first ages."""
     found, picks = [], []
-    greatest = max(last.values())
+    greatest = min(each.followed.greatest for each in ending)
     for i, name in enumerate(names):
         keys = np.stack([each.ages[:, i] for each in ending], axis=1)
         own = np.stack([each.order[:, i] for each in ending], axis=1)
@@ -111,7 +111,8 @@ def ends_of_specimens(
         first = joint.min(axis=1)
         shares = {e.mode.name: float(s) for e, s in zip(ending, _firsts(joint.T), strict=True)}
         least = min(float(each.earliest.units[i]) for each in ending)
-        end = age_at_limit(name, first, last[name], least, last[name] or greatest)
+        begun = max(each.followed.begun[name] for each in ending)
+        end = age_at_limit(name, first, last[name], least, greatest, begun)
         middle = {e.mode.name: float(e.medians[i]) for e in ending}
         near = tuple(way for way, age in middle.items() if age <= NEAR * end.age.value < np.inf)
         found.append(SpecimenEnd(name, end, shares, near))
