@@ -18,7 +18,7 @@ from tests.browser.opening import Opened
 from tests.conftest import mostly_nightly
 from tests.life import shipped
 from tests.life.test_other_uses import by_hand
-from tests.life.test_time_to_failure import RATE, indicator, linear, of, told
+from tests.life.test_time_to_failure import RATE, indicator, linear, of, six_specimens
 
 
 @pytest.fixture(scope="module")
@@ -76,8 +76,8 @@ def test_it_can_be_asked_for_another_use(opened: Opened) -> None:
     page.keyboard.press("ArrowRight")
     page.focus("#use-cold")
     page.keyboard.press("ArrowLeft")
-    told = page.inner_text(".use-verdict")
-    assert told == "Half of new specimens fail by 104000 [83300, 135000] pages."
+    verdict = page.inner_text(".use-verdict")
+    assert verdict == "Half of new specimens fail by 104000 [83300, 135000] pages."
     assert 'motor_torque = "1.25 N*m"' in page.inner_text("#use-toml")
     assert 'coldest = "50 degC"' in page.inner_text("#use-toml")
     page.fill("#use-day", "500")
@@ -99,7 +99,7 @@ def test_the_numbers_that_matter_appear_once_and_all_agree(browser: Browser, tmp
     """B50 and the age to look again, on the page as it opens; the table, charts and data hold the same."""
     path = tmp_path / "life.html"
     with shipped.few():
-        found = told()
+        found = six_specimens()
     answer = replace(shipped.followed(2), time_to_failure=found, uses=None)
     path.write_text(render_life(answer, shipped.opened(2).runs(), "hersey life"), encoding="utf-8")
     page = Opened(browser, path).page

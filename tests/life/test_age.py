@@ -59,6 +59,16 @@ def test_separators_between_digits_are_refused_with_what_to_write(text: str, way
         assert Age.parse(way.strip("'"), "h").value > 0
 
 
+@pytest.mark.parametrize("text", [".5,000 pages", "5.,000 pages", "-5,000 pages"])
+def test_separators_that_say_nothing_are_answered_with_the_form_of_an_age(text: str) -> None:
+    with pytest.raises(ParameterError) as caught:
+        Age.parse(text)
+    assert str(caught.value) == (
+        f"age '{text}' is not a number with a unit. Write a number and what it counts, "
+        "e.g. '120000 pages', '310 h' or '2e6 cycles'"
+    )
+
+
 @pytest.mark.parametrize("text", ["120000", "5 %", "5 pages per day", "5 /h", "5 " + 60 * "p", "5 \x1b[2J"])
 def test_an_age_without_a_unit_that_is_a_word_is_refused(text: str) -> None:
     with pytest.raises(UnitError):

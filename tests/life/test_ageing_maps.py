@@ -24,7 +24,7 @@ from tests.conftest import made_once
 from tests.life import shipped
 
 
-def told(unit: str, age: float, passed: float = 0.0) -> Any:
+def failing(unit: str, age: float, passed: float = 0.0) -> Any:
     """What `TimeToFailure` says of one specimen, no growth of its torque among it."""
     end = SimpleNamespace(
         unit=unit, age=AgeAtLimit(unit, Interval(age, 0.9 * age, 1.1 * age), 0.0, 170e3, passed)
@@ -35,7 +35,7 @@ def told(unit: str, age: float, passed: float = 0.0) -> Any:
 @cache
 def maps() -> AgeingMaps:
     return made_once(
-        "ageing-maps", lambda: ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3))
+        "ageing-maps", lambda: ageing_maps(shipped.opened(1), shipped.machine(), failing("U1", 230e3))
     )
 
 
@@ -92,7 +92,7 @@ def test_a_state_is_that_of_its_region() -> None:
 
 def test_no_map_is_inverted() -> None:
     """The transition rises with temperature at every age, as that of the truth does."""
-    found = ageing_maps(shipped.opened(8), shipped.machine(), told("U8", 250e3), unit="U8")
+    found = ageing_maps(shipped.opened(8), shipped.machine(), failing("U8", 250e3), unit=" U8 ")
     truth = population(*example_drive(), units=8, seed=3)[7]
     for index, age in enumerate(found.ages.tolist()):
         assert (np.diff(found.transition[index]) >= 0.0).all()
@@ -129,22 +129,22 @@ def test_what_no_dwell_encloses_is_not_measured() -> None:
 
 
 def test_far_ahead_there_is_no_map() -> None:
-    found = ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 300e3))
+    found = ageing_maps(shipped.opened(1), shipped.machine(), failing("U1", 300e3))
     assert found.when == ("new", "now")
     (far,) = (each for each in found.warnings if each.kind == "end beyond the map")
     assert str(far).startswith("there is no map at the end, 300000 pages: that is more than 1.5 times")
 
 
 def test_a_unit_that_has_ended_has_no_end_ahead() -> None:
-    found = ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 150e3, passed=1.0))
+    found = ageing_maps(shipped.opened(1), shipped.machine(), failing("U1", 150e3, passed=1.0))
     assert found.when == ("new", "now")
 
 
 def test_what_cannot_be_drawn_is_told() -> None:
     with pytest.raises(ParameterError, match=r"no specimen 'U11'. Did you mean 'U1'"):
-        ageing_maps(shipped.opened(1), shipped.machine(), told("U1", 230e3), unit="U11")
+        ageing_maps(shipped.opened(1), shipped.machine(), failing("U1", 230e3), unit="U11")
     with pytest.raises(InsufficientDataError, match="runs of U7 do not show how torque"):
-        ageing_maps(shipped.opened(1), shipped.machine(), told("U7", 230e3))
+        ageing_maps(shipped.opened(1), shipped.machine(), failing("U7", 230e3))
 
 
 def test_it_says_what_the_points_meet() -> None:

@@ -88,6 +88,17 @@ def test_the_numbers_for_computing_are_those_of_the_dwells(campaign: Campaign, r
     assert rests[1][0] is None
 
 
+def test_many_runs_may_be_named(campaign: Campaign) -> None:
+    """More than one statement of SQLite may name; those that are not there change nothing."""
+    campaign.add_entries((another(n), f"F{n}", Age(0.0, "pages")) for n in range(3))
+    for named in (range(20_000, 0, -1), [3, 1, 2, 3, *range(10**15 - 20_000, 10**15)]):
+        for found, every in zip(campaign.measured(named), campaign.measured(), strict=True):
+            assert np.array_equal(found, every, equal_nan=True)
+        assert campaign.drives(named).keys() == campaign.drives().keys()
+    assert set(campaign.measured([3, 2])[0].tolist()) == {2, 3}
+    assert campaign.measured([])[0].size == len(campaign.drives([])) == 0
+
+
 def test_points_come_back_whole(campaign: Campaign, points: hersey.SteadyPoints, bench_csv: Path) -> None:
     rest = hersey.NoLoadTorque.stated(constant=1e-4, uncertainty=0.1)
     for number, each in enumerate((points, points.without(rest)), 1):

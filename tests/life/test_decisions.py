@@ -12,6 +12,7 @@ import pytest
 from scipy.stats import binom
 
 from hersey.errors import ParameterError
+from hersey.life.growth.limit_ages import age_at_limit
 from hersey.life.time_to_failure.decided import _replacement
 from hersey.life.time_to_failure.deciding_run import DecidingRun, loss_after, loss_after_new
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
@@ -52,7 +53,11 @@ def test_far_beyond_the_age_followed_no_share_is_small() -> None:
     late = failing_share(first, 700.0, 0.2, followed=200.0)
     assert (late.answer, late.share.low, late.share.high) == ("not yet decided", 0.1, 1.0)
     assert "10 % or more of new specimens fail before 700 pages (95 %)" in late.words("pages")
-    assert late.advice("pages").startswith("follow the specimens to 400 pages to decide whether at most 20 %")
+    since = late.advice("pages", 300.0)  # re-greased at 200
+    assert since.startswith("follow the specimens to 400 pages without maintenance to decide whether at most")
+    assert late.advice("pages", 200.0).startswith(
+        "follow the specimens to 400 pages to decide whether at most 20 %"
+    )
     assert failing_share(first, 700.0, 0.05, followed=200.0).answer == "no"
     assert failing_share(first, 360.0, 0.05, followed=200.0).answer == "not yet decided"
     assert failing_share(first, 340.0, 0.05, followed=200.0).answer == "yes"
@@ -174,7 +179,7 @@ def test_fewer_than_four_specimens_answer_nothing_and_say_so() -> None:
     )
     assert (asked.share_failing, asked.replacement, asked.deciding_runs) == (None, None, ())
     assert warned(asked)["share unknown"].sentence == (
-        "Whether at most 5 % of new specimens fail before that age cannot be determined from 3 specimens. "
+        "Whether at most 5 % of new specimens fail before 900 pages cannot be determined from 3 specimens. "
         "Follow four specimens or more."
     )
     assert warned(asked)["replacement age unknown"].values == {"specimens": 3}
@@ -209,12 +214,17 @@ def test_of_specimens_followed_a_shorter_time_it_is_unknown_how_many_fail() -> N
     ages = np.tile([1000.0, 1000.0, 1000.0], (20, 1))
     ending: Any = [SimpleNamespace(ages=ages)]
     order = np.arange(20)[:, None]
-    at = failing_of_followed(ending, order, 200.0, np.array([300.0, 100.0, 100.0]))
+    units = [age_at_limit("", ages[:, 0], last) for last in (300.0, 100.0, 100.0)]
+    at = failing_of_followed(ending, order, 200.0, units)
     assert at is not None
     assert (at.failed.value, at.failed.low, at.failed.high) == (0.0, 0.0, 2.0)
-    sooner = failing_of_followed(ending, order, 150.0, np.array([300.0, 100.0, 100.0]))
+    sooner = failing_of_followed(ending, order, 150.0, units)
     assert sooner is not None
     assert sooner.failed.high == 0.0
+    # followed to 300, but re-greased at 250: it may fail from 250 + 1.75 * 50 = 337.5 on
+    units[0] = age_at_limit("", ages[:, 0], 300.0, begun=250.0)
+    of_greased = [failing_of_followed(ending, order, age, units) for age in (337.0, 338.0)]
+    assert [each and each.failed.high for each in of_greased] == [2.0, 3.0]
 
 
 def test_a_question_that_takes_too_many_says_so() -> None:

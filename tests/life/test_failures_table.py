@@ -127,7 +127,7 @@ REFUSED = {
     "age [h],failed\n10,F\n": "line 2, column 'failed' is 'F': write yes or no",
     "start [h],end [h],status\n10,,F\n": "line 2, column 'end' is empty, but it failed. Fill it in",
     "age status\n10 F\n": "'age status'. Separate columns by commas, e.g. 'age,status'",
-    "time,lifetime,status\n10,10,F\n": "columns 'time' and 'lifetime' both say the age",
+    "Time [h],n,Lifetime (h),status\n9,1,9,F\n": "columns 'Time [h]' and 'Lifetime (h)' both say the age",
     "age [h]\n10\n": "failures.csv: no column says which specimens failed. Columns: 'age [h]'",
     "duration,status\n10,failed\n": "failures.csv: there is no column 'age'. Columns: 'duration', 'status'",
     "low [h]\n10\n": "failures.csv: there is no column 'high'. Columns: 'low [h]'",

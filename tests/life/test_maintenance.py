@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
@@ -19,9 +20,10 @@ from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLog
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
 from hersey.life.campaign.store import SCHEMAS
-from hersey.life.growth.limit_ages import Earliest
-from hersey.life.indicator import Indicator, Indicators, Runs
-from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event
+from hersey.life.growth import marginal
+from hersey.life.growth.limit_ages import Earliest, ages_at_limit
+from hersey.life.indicator import Indicator, Indicators, OwnAges, Runs
+from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Event, Followed
 from hersey.life.time_to_failure.estimate import time_to_failure
 from hersey.life.time_to_failure.way import FittedWay
 from tests.cli.command import run
@@ -86,6 +88,46 @@ def test_growth_begins_anew_from_a_re_greasing(monkeypatch: pytest.MonkeyPatch) 
     # without the event the same runs show a slower growth, and nothing of the truth
     without = time_to_failure(Indicators(runs(), (torque(300.0),)))
     assert {e.unit: e.age for e in without.units}["F3"].age.value > 1.2 * ends["F3"].age.value
+
+
+def test_after_a_re_greasing_the_age_followed_counts_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what a re-greasing at 500 renews, runs to 600 show 100: ages from 500 + 175 on are open."""
+    fewer(monkeypatch)
+    monkeypatch.setattr(marginal, "_POPULATION", 16)
+    flat = np.random.default_rng(3).normal(0.0, 0.01, 42)
+    steady = Indicator("torque", "torque", "N m", 2.0, np.exp(flat), np.full(42, 0.003))
+    gear = Indicator("gear", "gear", "1", 1.0, np.full(42, 1e-4), np.full(42, 0.01), accumulates=True)
+    greased = tuple(Event(f"F{i}", Age(500.0, "pages"), "re-greased") for i in range(1, 7))
+    some = time_to_failure(Indicators(runs(greased[2]), (steady, gear)), until=700.0)
+    torque_, damage = (mode.ages.units[2] for mode in some.modes)
+    assert (torque_.begun, torque_.last) == (500.0, 600.0)
+    assert torque_.age.low == 500.0 + 1.75 * 100.0
+    # damage is not reset by grease
+    assert (damage.begun, damage.age.low) == (0.0, 1.75 * 600.0)
+    of_first = some.units[2].age
+    assert (of_first.begun, of_first.age.low, of_first.age.high) == (500.0, 675.0, math.inf)
+    assert some.units[1].age.age.low == 1.75 * 600.0
+    assert some.followed_failing is not None
+    assert some.followed_failing.failed.high == 1.0  # F3 may fail before 700
+    assert some.ageing.none_before == 1.75 * 600.0
+    # no run shows torque of new specimens beyond 500
+    every = time_to_failure(Indicators(runs(*greased), (steady, gear)))
+    assert every.modes[0].ages.b50 is not None
+    assert every.modes[0].ages.b50.age.low == 1.75 * 500.0
+    assert every.modes[1].ages.b50 is not None
+    assert every.modes[1].ages.b50.age.low == 1.75 * 600.0
+    assert every.b50 is not None
+    assert every.b50.age.low == 1.75 * 500.0
+    assert every.ageing.followed == 600.0
+
+
+def test_of_a_specimen_re_greased_after_its_last_run_the_others_show_how_far() -> None:
+    ages = np.full(100, 5000.0)
+    own = OwnAges(np.stack([ages, ages], axis=1), np.full((100, 8), 5000.0))
+    followed = Followed({"A": 300.0, "B": 300.0}, {"A": 0.0, "B": 350.0}, 300.0)
+    found = ages_at_limit("torque", "pages", 2.0, followed, own, ())
+    assert [each.age.low for each in found.units] == [525.0, 350.0 + 525.0]
+    assert [each.far for each in found.units] == [True, False]
 
 
 def test_the_chart_shows_the_age_of_the_specimen_and_a_mark_at_the_event(
@@ -197,8 +239,8 @@ def test_two_columns_of_events_are_refused(tmp_path: Path) -> None:
 def test_an_event_of_nothing_is_refused(campaign: Path) -> None:
     run("campaign", "add", "life.hersey", "--table", "runs.csv", cwd=campaign)
     with Campaign.open(campaign / "life.hersey") as opened:
-        with pytest.raises(ParameterError, match="no run is of specimen 'U2'"):
-            opened.add_event("U2", "5 pages", "cleaned")
+        with pytest.raises(ParameterError, match=r"life\.hersey has no specimen 'X2'\. Specimens: U1$"):
+            opened.add_event("X2", "5 pages", "cleaned")
         with pytest.raises(UnitError, match="in h, but the others are in pages"):
             opened.add_event("U1", "5 h", "cleaned")
         with pytest.raises(ParameterError, match="an event names run 1, which is of another specimen or age"):
@@ -211,6 +253,11 @@ def test_spaces_of_a_name_do_not_count(tmp_path: Path) -> None:
         shipped.add(opened, "U 1", 0.0, [(1.0, 0.1, 0.001, 400.0)])
         added = opened.add_event(" U  1 ", "5 pages", "cleaned")
         assert opened.events() == [added] == [Event("U 1", Age(5.0, "pages"), "cleaned", None)]
+        for name in (" U  1 ", "U 1"):
+            assert opened.runs(name)["unit"].to_list() == ["U 1"]
+            assert [each["unit"] for each in opened.to_dict(name)["events"]] == ["U 1"]
+        with pytest.raises(ParameterError, match=r"has no specimen '  '\. Specimens: U 1$"):
+            opened.runs("  ")
         opened.remove_event(" U  1 ", "5 pages", "cleaned")
         assert opened.events() == []
 
@@ -268,6 +315,7 @@ def test_values_foretold_count_from_the_last_event() -> None:
     growth = SimpleNamespace(drawn_values=lambda row, age: asked.append((row, age.tolist())))
     mode: Any = SimpleNamespace(growth=growth)
     none = np.zeros((1, 2))
-    way = FittedWay(mode, none, none, none[0], {"U1": 1}, 0.1, {"U1": 300.0}, Earliest.unknown(1))
+    followed = Followed({"U1": 600.0}, {"U1": 300.0}, 300.0)
+    way = FittedWay(mode, none, none, none[0], {"U1": 1}, 0.1, followed, Earliest.unknown(1))
     way.drawn_values("U1", np.array([300.0, 500.0]))
     assert asked == [(1, [0.0, 200.0])]

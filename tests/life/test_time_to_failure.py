@@ -1,4 +1,4 @@
-"""What ends specimens: truths in closed form, which way is first, what cannot be told."""
+"""What ends specimens: truths in closed form, which way is first, what cannot be determined."""
 
 from __future__ import annotations
 
@@ -53,48 +53,48 @@ def warned(found: TimeToFailure) -> dict[str, Warning]:
 
 
 @cache
-def told() -> TimeToFailure:
+def six_specimens() -> TimeToFailure:
     """Torque reaches 2 at 1 / rate, film 3 at 2.2 / rate, in F1 at 1 / rate too; a sign at 0.3 / rate."""
     film = RATE / 1.1
     film[0] = 2.0 * RATE[0]
     torque = indicator("torque", linear(RATE), 2.0)
     other = indicator("film", linear(film), 3.0, seed=2)
     early = indicator("noise", linear(RATE), 1.3, seed=3)
-    untold = indicator("grip", np.where(AGE == 0.0, 1.0, np.nan), 2.0)
+    grip = indicator("grip", np.where(AGE == 0.0, 1.0, np.nan), 2.0)
     object.__setattr__(early, "sign", True)
     return time_to_failure(
-        of(torque, other, early, untold, warnings=(Warning(NOT_JUDGED, "no table [motor]", where="heat"),))
+        of(torque, other, early, grip, warnings=(Warning(NOT_JUDGED, "no table [motor]", where="heat"),))
     )
 
 
 def test_the_first_end_is_found_with_its_way() -> None:
-    for end, rate in zip(told().units[1:], RATE[1:], strict=True):
+    for end, rate in zip(six_specimens().units[1:], RATE[1:], strict=True):
         assert end.named == ("torque",)
         assert end.age.age.low <= 1.02 / rate
         assert end.age.age.high >= 0.98 / rate
         assert end.age.age.value == pytest.approx(1.0 / rate, rel=0.1)
-    assert told().b50.age.value == pytest.approx(1.0 / np.median(RATE), rel=0.35)
+    assert six_specimens().b50.age.value == pytest.approx(1.0 / np.median(RATE), rel=0.35)
 
 
 def test_where_two_ways_are_near_both_are_named() -> None:
-    first = told().units[0]
+    first = six_specimens().units[0]
     assert set(first.named) == {"torque", "film"}
     assert sum(first.first.values()) == pytest.approx(1.0)
     assert set(first.likely) == {"torque", "film"}
-    assert [each.likely for each in told().units[1:]] == [("torque",)] * 5
+    assert [each.likely for each in six_specimens().units[1:]] == [("torque",)] * 5
 
 
 def test_an_early_sign_ends_no_unit() -> None:
-    assert [mode.name for mode in told().modes] == ["torque", "film", "noise"]
-    assert [mode.name for mode in told().ending] == ["torque", "film"]
-    assert all("noise" not in end.first for end in told().units)
-    assert "noise (a precursor, not a failure)" in told().summary()
+    assert [mode.name for mode in six_specimens().modes] == ["torque", "film", "noise"]
+    assert [mode.name for mode in six_specimens().ending] == ["torque", "film"]
+    assert all("noise" not in end.first for end in six_specimens().units)
+    assert "noise (a precursor, not a failure)" in six_specimens().summary()
 
 
 def test_a_specimen_has_failed_only_if_that_is_nearly_certain() -> None:
-    assert told().units[5].age.passed > 0.99
-    assert [each.state for each in told().units] == ["running"] * 5 + ["failed"]
-    assert "already passed (last seen at 600)" in str(told().units[5])
+    assert six_specimens().units[5].age.passed > 0.99
+    assert [each.state for each in six_specimens().units] == ["running"] * 5 + ["failed"]
+    assert "already passed (last seen at 600)" in str(six_specimens().units[5])
     ages = np.where(np.arange(100) < 83, 500.0, 700.0)
     doubtful = age_at_limit("F7", ages, 600.0)
     assert (doubtful.state, doubtful.passed) == ("unclear", 0.83)
@@ -104,18 +104,19 @@ def test_a_specimen_has_failed_only_if_that_is_nearly_certain() -> None:
 
 
 def test_the_headline_says_who_needs_attention_and_what_the_others_reach() -> None:
-    attention = told().attention
+    attention = six_specimens().attention
     assert (attention.failed, attention.unclear) == (("F6",), ())
     assert attention.running == ("F5", "F4", "F3", "F2", "F1") or attention.running[-1] == "F2"
-    least = min(each.age.age.low for each in told().units[:5])
+    least = min(each.age.age.low for each in six_specimens().units[:5])
     assert attention.look_again == least
-    assert told().headline() == (
+    assert six_specimens().headline() == (
         "One specimen needs attention: F6 has probably failed. "
         f"The other five should reach at least {rounded(least)} pages."
     )
-    assert told().of_new() == (
-        f"Half of new specimens fail by {rounded(told().b50.age.value)} pages (90 %: "
-        f"{rounded(told().b50.age.low)} to {rounded(told().b50.age.high)} pages), mostly by torque."
+    half = six_specimens().b50.age
+    assert six_specimens().of_new() == (
+        f"Half of new specimens fail by {rounded(half.value)} pages (90 %: "
+        f"{rounded(half.low)} to {rounded(half.high)} pages), mostly by torque."
     )
     doubtful = replace(attention, failed=(), unclear=("F6", "F2"), running=("F1",))
     assert doubtful.words("pages")[0] == "Two specimens need attention: F6 and F2 may have failed."
@@ -143,11 +144,11 @@ def test_fewer_than_four_specimens_are_no_population() -> None:
 
 
 def test_what_cannot_be_judged_keeps_its_reason() -> None:
-    stated, grip = (each for each in told().warnings if each.kind == NOT_JUDGED)
+    stated, grip = (each for each in six_specimens().warnings if each.kind == NOT_JUDGED)
     assert str(stated) == "heat: no table [motor]"
     assert grip.where == "grip"
     assert str(grip.values["reason"]).startswith("no specimen was measured at two ages")
-    assert "\nheat is not judged. No table [motor].\n" in told().summary()
+    assert "\nheat is not judged. No table [motor].\n" in six_specimens().summary()
     with pytest.raises(InsufficientDataError, match="Grip: No run shows it"):
         time_to_failure(of(indicator("grip", np.full(AGE.size, np.nan), 2.0)))
 
@@ -165,16 +166,16 @@ def test_where_nothing_can_be_judged_the_reason_of_most_modes_comes_first() -> N
 
 
 def test_the_result_is_whole_and_the_same_again() -> None:
-    plain = told().to_dict()
+    plain = six_specimens().to_dict()
     assert json.loads(json.dumps(plain, allow_nan=False)) == plain
-    frame = told().to_frame()
+    frame = six_specimens().to_frame()
     assert frame.height == UNITS * 4 + 2
-    assert frame["age (pages)"][0] == told().modes[0].ages.units[0].age.value
-    curve = told().curve
+    assert frame["age (pages)"][0] == six_specimens().modes[0].ages.units[0].age.value
+    curve = six_specimens().curve
     assert (np.diff(curve.median) >= 0.0).all()
     assert (curve.low <= curve.median).all()
     assert (curve.median <= curve.high).all()
-    assert np.interp(told().b50.age.value, curve.age, curve.median) == pytest.approx(0.5, abs=0.05)
+    assert np.interp(six_specimens().b50.age.value, curve.age, curve.median) == pytest.approx(0.5, abs=0.05)
 
 
 def test_the_same_data_and_seed_give_the_same_ends() -> None:

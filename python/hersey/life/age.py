@@ -14,10 +14,11 @@ _WORD = re.compile(r"[^\W\d_][\w-]{0,39}")
 #: A number whose point may stand between thousands, as in German.
 _THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\.[0-9]{3}")
 #: Digits with separators between them.
-_SEPARATED, _SEPARATORS = re.compile(r"[-+]?[0-9]+([.,' ][0-9]+)+"), re.compile(r"[.,' ]")
+_SEPARATED, _SEPARATORS = re.compile(r"[+]?[0-9]+([.,' ][0-9]+)+"), re.compile(r"[.,' ]")
 #: What ages usually count and is no time, which takes pint a second to find out.
 COUNTS = frozenset(["cycle", "lap", "page", "print", "revolution", "sheet", "start", "stop", "stroke"])
 _WAY_OUT = "Write a number and what it counts, e.g. '120000 pages', '310 h' or '2e6 cycles'"
+_NO_NUMBER = f"is not a number with a unit. {_WAY_OUT}"
 
 
 @dataclass(frozen=True)
@@ -54,10 +55,11 @@ class Age:
         """
         match = _AGE.fullmatch(text[:200])
         if match is None:
-            raise ParameterError(f"age '{text[:40]}' is not a number with a unit. {_WAY_OUT}")
+            raise ParameterError(f"age '{text[:40]}' {_NO_NUMBER}")
         if re.match(r"[.,' ]?[0-9]", match[2]):
             ways = " or ".join(f"'{each}'" for each in _without_separators(text[:40]))
-            raise ParameterError(f"age '{text[:40]}' has separators between its digits. Write {ways}")
+            wrong = f"has separators between its digits. Write {ways}"
+            raise ParameterError(f"age '{text[:40]}' {wrong if ways else _NO_NUMBER}")
         if not (match[2] or unit):
             raise UnitError(f"age '{text[:40]}' has no unit. {_WAY_OUT}")
         counted = match[2] or unit
@@ -116,11 +118,16 @@ def refuse_thousands(number: str, counted: str) -> None:
 
 
 def _without_separators(text: str) -> list[str]:
-    """What digits with separators may mean: a whole number, and one with the last of them as its point."""
+    """What digits with separators may mean: a whole number, and one with the last of them as its point.
+
+    Nothing where they stand otherwise.
+    """
     digits = _SEPARATED.match(text.strip())
-    number = digits[0] if digits else ""
+    if digits is None:
+        return []
+    number = digits[0]
     unit = text.strip()[len(number) :]
-    head, last, tail = re.split(r"([.,' ])(?=[0-9]*$)", number) if digits else (number, "", "")
+    head, last, tail = re.split(r"([.,' ])(?=[0-9]*$)", number)
     head = _SEPARATORS.sub("", head)
     ways = [f"{head}{tail}{unit}"]
     if last in (".", ",") and number.count(last) == 1:

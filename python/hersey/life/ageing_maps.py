@@ -18,6 +18,7 @@ import numpy as np
 from hersey.arrays import BoolArray, FloatArray, one_thread
 from hersey.errors import InsufficientDataError, ParameterError, meant
 from hersey.life.age import Age
+from hersey.life.campaign.adding import as_kept
 from hersey.life.growth.limit_ages import rounded
 from hersey.life.indicators.run_dwells import read_runs_of
 from hersey.life.indicators.shared_kernel import shared_kernel
@@ -292,7 +293,7 @@ def _chosen(found: TimeToFailure, unit: str) -> SpecimenEnd:
     """The specimen of that name; else the one that ends next, or first if all have ended."""
     if unit:
         for each in found.units:
-            if each.unit == unit:
+            if each.unit == as_kept(unit):
                 return each
         known = [each.unit for each in found.units]
         near = meant(unit, known)

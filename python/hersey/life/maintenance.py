@@ -85,6 +85,19 @@ class Stretch(Record):
     begun: Annotated[float, Means("age of the specimen at which it began")]
 
 
+class Followed(NamedTuple):
+    """How far runs follow specimens since they were new, or since maintenance from which on they age anew."""
+
+    last: dict[str, float]  #: age of each specimen when last seen
+    begun: dict[str, float]  #: age from which it ages
+    greatest: float  #: age of any run since then
+
+    @classmethod
+    def from_new(cls, last: dict[str, float]) -> Followed:
+        """Return that of specimens without maintenance."""
+        return cls(last, dict.fromkeys(last, 0.0), max(last.values()))
+
+
 class Segments(NamedTuple):
     """Runs by segment: a stretch of life between maintenance, in which a specimen ages from new.
 

@@ -230,7 +230,7 @@ class _Ways:
         order = joint_order(ways, of_runs, random)
         first = np.sort(reduce(np.minimum, ages_of_new(ways, order, random)), axis=1)
         least = Earliest.of_first([way.earliest for way in ways])
-        b10, b50 = of_population(first, len(units), least, float(indicators.runs.age.max()))
+        b10, b50 = of_population(first, len(units), least, min(way.followed.greatest for way in ways))
         ends = tuple(UseEnd(each.unit, each.age.age, each.ways) for each in units)
         if b10 is None or b50 is None:
             return ends, None, None

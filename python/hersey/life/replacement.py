@@ -59,9 +59,7 @@ class Replacement(Result):
     ]
     age: Annotated[Interval, Means("age of least cost; null where no planned replacement pays")]
     saving: Annotated[Interval, Means("share of the cost saved at that age; 0 without such an age")]
-    until: Annotated[
-        float | None, Means("greatest age that is judged, 1.75 times that followed; null for a law")
-    ]
+    until: Annotated[float | None, Means("greatest age that is judged, as far as runs show; null for a law")]
     ages: Annotated[FloatArray, Means("ages of replacement", shape="(n,)")]
     cost: Annotated[FloatArray, Means("cost per unit of age, over that of running to failure", shape="(n,)")]
     cost_low: Annotated[FloatArray, Means(shape="(n,)")]

@@ -62,7 +62,7 @@ def _expected(each: SpecimenEnd) -> str:
     age = each.age.age
     if each.state == "unclear":
         return f"before {rounded(age.high)}" if math.isfinite(age.high) else "unknown"
-    beyond = math.isinf(age.value) or age.value > FAR * each.age.last > 0.0
+    beyond = math.isinf(age.value) or each.age.far
     if beyond and math.isfinite(age.low):
         return f"after {rounded(age.low)}"
     return rounded(age.value) if math.isfinite(age.value) else "unknown"

@@ -14,6 +14,7 @@ import numpy as np
 from hersey import _core
 from hersey.errors import ParameterError, printable
 from hersey.life.age import refuse_thousands
+from hersey.life.oil_layer import STARVED
 from hersey.result import json_value
 from hersey.testbench.ageing import AgedTruth, Unit
 from hersey.testbench.stand import PREAMBLE, Stand
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 #: The stand of a campaign: from a cold morning to the setpoint, dwells that repeat within 1 %.
 STAND = Stand(temperatures_degC=(60.0, 90.0, 120.0, 150.0, 180.0), repeatability=0.01)
-#: Share of the flooded film below which a unit counts as starved: its layer is thinner than that film.
-STARVED = 2.0 ** (-1.0 / 3.0)
 #: Oldest run, in pages: beyond it the laws of ageing leave all sense.
 LATEST = 1e6
 #: Age up to which an end is looked for, in ages of the last run.
@@ -93,7 +92,7 @@ class Corners:
         return float(below - above)
 
     def _starves(self, truth: AgedTruth) -> float:
-        return STARVED - float(truth.starvation(*map(np.array, self.full)))
+        return float(STARVED - truth.starvation(*map(np.array, self.full)))
 
 
 @dataclass(frozen=True)

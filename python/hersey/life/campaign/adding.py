@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import FORCE, ParameterError, printable
+from hersey.errors import FORCE, ParameterError, meant, printable
 from hersey.life.age import Age
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.result import Record
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 #: What became of a run.
 ADDED, ALREADY, REPLACED = "added", "already there", "replaced"
 _LONGEST_UNIT = 60
+#: Specimens that a message lists.
+_SPECIMENS = 12
 
 
 @dataclass(frozen=True)
@@ -223,6 +225,16 @@ def _unit(database: sqlite3.Connection, unit: str, force: bool) -> str:
 def as_kept(unit: str) -> str:
     """Return a specimen's name as the campaign keeps it: without spaces around it, one between words."""
     return " ".join(unit.split())
+
+
+def no_specimen(database: sqlite3.Connection, path: Path, unit: str) -> ParameterError:
+    """Return the error of a specimen that is not there, with those that are."""
+    known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
+    near = meant(unit, known)
+    more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
+    listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
+    way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
+    return ParameterError(f"{path.name} has no specimen '{unit}'", remedy=way)
 
 
 def _folded(unit: str) -> str:

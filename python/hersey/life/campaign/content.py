@@ -8,9 +8,10 @@ are read.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from hersey.errors import HerseyError, ParameterError, UnitError
 from hersey.life.age import refuse_no_unit
@@ -23,6 +24,8 @@ from hersey.life.maintenance import KINDS
 MOST_RUNS, MOST_DWELLS = 50_000, 2_000_000
 #: No number of a campaign is greater, in SI; no age, in its unit, and no number of a row.
 _LARGEST, _OLDEST, _LAST = "1e12", "1e15", "1000000000000000"
+#: Runs that a statement names: SQLite's limits on its length and instructions allow some thousand.
+_NAMED = 1000
 #: Characters of a name that a message shows.
 _SHOWN = 40
 
@@ -213,11 +216,16 @@ def refuse_unsound_dwells(
     database: sqlite3.Connection, path: Path, runs: Collection[int] | None = None
 ) -> None:
     """Refuse dwells, of some runs or of all, that are not as they are written; errors as above."""
-    of_run = one_of("run_id", runs)
+    for some in _blocks(runs):
+        _refuse_unsound_dwells(database, path, some)
+
+
+def _refuse_unsound_dwells(database: sqlite3.Connection, path: Path, runs: Collection[int] | None) -> None:
+    of_run = _one_of("run_id", runs)
     key = "run_id || ', dwell ' || number"
     for number, column, asked in _wrong(database, "dwells", key, _DWELLS, f"{of_run} AND"):
         raise damaged(path, f"'{column}' of run {str(number)[:_SHOWN]} is not {asked}")
-    counts = dict(database.execute(f"SELECT id, dwells FROM runs WHERE {one_of('id', runs)}").fetchall())
+    counts = dict(database.execute(f"SELECT id, dwells FROM runs WHERE {_one_of('id', runs)}").fetchall())
     for number, count in database.execute(
         f"SELECT run_id, count(*) FROM dwells WHERE {of_run} GROUP BY run_id"
     ):
@@ -228,9 +236,26 @@ def refuse_unsound_dwells(
             raise damaged(path, f"run {number} should have {count} dwells and has none")
 
 
-def one_of(column: str, runs: Collection[int] | None) -> str:
+def rows_of(
+    database: sqlite3.Connection, select: str, column: str, runs: Collection[int] | None, order: str = ""
+) -> Iterator[tuple[Any, ...]]:
+    """Yield the rows of some runs, which a column names, or of all."""
+    for some in _blocks(runs):
+        yield from database.execute(f"{select} WHERE {_one_of(column, some)} {order}")
+
+
+def _blocks(runs: Collection[int] | None) -> Iterator[Collection[int] | None]:
+    """Yield some runs in ascending order, so many as a statement may name; for all runs None."""
+    if runs is None:
+        yield None
+        return
+    ordered = sorted({int(run) for run in runs})
+    yield from (ordered[i : i + _NAMED] for i in range(0, len(ordered), _NAMED))
+
+
+def _one_of(column: str, runs: Collection[int] | None) -> str:
     """Return the condition that a column names one of some runs; for all one that always holds."""
-    return "1" if runs is None else f"{column} IN ({', '.join(str(int(run)) for run in runs)})"
+    return "1" if runs is None else f"{column} IN ({', '.join(map(str, runs))})"
 
 
 def _wrong(

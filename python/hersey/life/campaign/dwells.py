@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Collection, Mapping
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 import polars as pl
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.campaign.content import one_of
+from hersey.life.campaign.content import rows_of
 from hersey.life.campaign.entry import COLUMNS
 
 if TYPE_CHECKING:
@@ -59,12 +60,10 @@ def measured_of(
     database: sqlite3.Connection, runs: Collection[int] | None = None
 ) -> tuple[IntArray, FloatArray]:
     """Return the numbers of every dwell, as `Campaign.measured`."""
-    rows = database.execute(
-        "SELECT run_id, speed, temperature, torque, torque_error FROM dwells "
-        f"WHERE {one_of('run_id', runs)} ORDER BY run_id, number"
-    )
+    select = "SELECT run_id, speed, temperature, torque, torque_error FROM dwells"
+    rows = rows_of(database, select, "run_id", runs, "ORDER BY run_id, number")
     parts = [np.empty((0, 5))]
-    while some := rows.fetchmany(_AT_ONCE):
+    while some := list(islice(rows, _AT_ONCE)):
         parts.append(np.array(some, dtype=float))
     numbers = np.concatenate(parts)
     return numbers[:, 0].astype(np.intp), numbers[:, 1:]

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sqlite3
+from pathlib import Path
 
 from hersey.errors import ParameterError
 from hersey.life.age import Age
-from hersey.life.campaign.adding import age_unit, as_kept
+from hersey.life.campaign.adding import age_unit, as_kept, no_specimen
 from hersey.life.maintenance import Event
 
 
@@ -15,7 +16,9 @@ def keeps_events(database: sqlite3.Connection) -> bool:
     return bool(database.execute("SELECT 1 FROM sqlite_master WHERE name = 'events'").fetchone())
 
 
-def add_event(database: sqlite3.Connection, unit: str, age: Age, kind: str, run: int | None) -> Event:
+def add_event(
+    database: sqlite3.Connection, path: Path, unit: str, age: Age, kind: str, run: int | None
+) -> Event:
     """Add an event inside a transaction; adding it again changes nothing but its run.
 
     Raises
@@ -27,7 +30,7 @@ def add_event(database: sqlite3.Connection, unit: str, age: Age, kind: str, run:
     """
     unit = as_kept(unit)
     if database.execute("SELECT 1 FROM runs WHERE unit = ?", (unit,)).fetchone() is None:
-        raise ParameterError(f"no run is of specimen '{unit}'. Add its runs first")
+        raise no_specimen(database, path, unit)
     age = age.as_unit(age_unit(database))
     database.execute("INSERT OR REPLACE INTO events VALUES (?, ?, ?, ?)", (unit, age.value, kind, run))
     return Event(unit, age, kind, run)

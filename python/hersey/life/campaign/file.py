@@ -14,7 +14,7 @@ from hersey.errors import OutputError, ParameterError
 from hersey.life.age import Age
 from hersey.life.campaign.adding import Added, add_entry, age_unit, is_there
 from hersey.life.campaign.checks import CampaignCheck, check
-from hersey.life.campaign.content import damaged, one_of, refuse_unsound_dwells, refuse_unsound_runs
+from hersey.life.campaign.content import damaged, refuse_unsound_dwells, refuse_unsound_runs, rows_of
 from hersey.life.campaign.entry import COLUMNS, Entry
 from hersey.life.campaign.events import add_event, events_of, remove_event
 from hersey.life.campaign.guarded import GuardedConnection
@@ -190,7 +190,7 @@ class Campaign:
         """
         parsed, kind = Age.parse(age) if isinstance(age, str) else age, kind_of(event)
         with transaction(self._database, self.path):
-            added = add_event(self._database, unit, parsed, kind, run)
+            added = add_event(self._database, self.path, unit, parsed, kind, run)
             refuse_unsound_runs(self._database, self.path)
             return added
 
@@ -257,7 +257,7 @@ class Campaign:
     def _drives(self, runs: Collection[int] | None) -> dict[int, tuple[NoLoadTorque | None, Sensors]]:
         from hersey.life.campaign.conversion import drive_of
 
-        rows = self._database.execute(f"SELECT id, reduction FROM runs WHERE {one_of('id', runs)}")
+        rows = rows_of(self._database, "SELECT id, reduction FROM runs", "id", runs)
         same: dict[str, tuple[NoLoadTorque | None, Sensors]] = {}
         found = {}
         for number, reduction in rows:
@@ -380,12 +380,12 @@ class Campaign:
 
     def to_dict(self, unit: str = "") -> dict[str, Any]:
         """Return file, unit of the ages, and the runs of one specimen or all as JSON."""
+        runs = self.runs(unit).to_dicts()
         events = [
             {"unit": each.unit, "age": each.age.value, "kind": each.kind, "run": each.run}
             for each in self.events()
-            if unit in ("", each.unit)
+            if not unit or each.unit == runs[0]["unit"]
         ]
-        runs = self.runs(unit).to_dicts()
         return {"file": str(self.path), "age_unit": self.age_unit, "runs": runs, "events": events}
 
     def to_frame(self) -> pl.DataFrame:

@@ -7,17 +7,15 @@ import sqlite3
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hersey.errors import ParameterError, meant, way_in
+from hersey.errors import ParameterError, way_in
 from hersey.life.age import Age
-from hersey.life.campaign.adding import lies_at
+from hersey.life.campaign.adding import as_kept, lies_at, no_specimen
 from hersey.life.maintenance import Event
 
 if TYPE_CHECKING:
     import polars as pl
 
 _LISTED = "id, unit, age, path, sha256, dwells, exponent, transition_speed, no_fit, version, added"
-#: Specimens that a message lists.
-_SPECIMENS = 12
 
 
 def runs_of(database: sqlite3.Connection, path: Path, unit: str) -> pl.DataFrame:
@@ -30,25 +28,16 @@ def runs_of(database: sqlite3.Connection, path: Path, unit: str) -> pl.DataFrame
     """
     import polars as pl
 
-    where, given = ("WHERE unit = ?", (unit,)) if unit else ("", ())
+    where, given = ("WHERE unit = ?", (as_kept(unit),)) if unit else ("", ())
     rows = database.execute(f"SELECT {_LISTED} FROM runs {where} ORDER BY unit, age, id", given)
     home = path.absolute().parent
     listed = [(*row[:3], str(lies_at(row[3], home)), *row[4:]) for row in rows]
     if unit and not listed:
-        raise _no_unit(database, path, unit)
+        raise no_specimen(database, path, unit)
     numbers: dict[str, Any] = dict.fromkeys(("age", "exponent", "transition_speed"), pl.Float64)
     names = ["run", "unit", "age", "log", *_LISTED.split(", ")[4:]]
     kinds = dict.fromkeys(names, pl.String) | numbers | {"run": pl.Int64, "dwells": pl.Int64}
     return pl.DataFrame(listed, schema=kinds, orient="row")
-
-
-def _no_unit(database: sqlite3.Connection, path: Path, unit: str) -> ParameterError:
-    known = [row[0] for row in database.execute("SELECT DISTINCT unit FROM runs ORDER BY unit")]
-    near = meant(unit, known)
-    more = f" and {len(known) - _SPECIMENS} more" if len(known) > _SPECIMENS else ""
-    listed = f"specimens: {', '.join(known[:_SPECIMENS])}{more}"
-    way = f"did you mean '{near}'?" if near else listed if known else "add a run first"
-    return ParameterError(f"{path.name} has no specimen '{unit}'", remedy=way)
 
 
 def no_run(path: Path, run: int) -> ParameterError:

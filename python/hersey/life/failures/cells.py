@@ -92,7 +92,7 @@ def read_cells(path: Path) -> Table:
     except csv.Error as error:
         raise UnreadableLogError(f"{path.name} is not a table: {error}") from None
     headings = headings_of(rows[0]) if rows else []
-    at = _roles(path.name, headings)
+    at = _roles(path.name, headings, rows[0] if rows else [])
     taken = set(at.values())
     others = {name: (i, unit) for i, (name, unit) in enumerate(headings) if name and i not in taken}
     units = {role: headings[i][1] or _UNITS.get(headings[i][0], "") for role, i in at.items()}
@@ -104,14 +104,17 @@ def read_cells(path: Path) -> Table:
     return Table(path.name, at, names, units, others, full, listed)
 
 
-def _roles(file: str, headings: Sequence[tuple[str, str]]) -> dict[str, int]:
-    """Which column has which role."""
+def _roles(file: str, headings: Sequence[tuple[str, str]], written: Sequence[str]) -> dict[str, int]:
+    """Which column has which role; ``written`` are the headings as they are in the file."""
     at: dict[str, int] = {}
 
     def look_for(role: str, names: Sequence[str]) -> None:
-        place = _place(file, headings, role, names)
-        if place is not None:
-            at[role] = place
+        places = [i for i, (name, _) in enumerate(headings) if name in names]
+        if len(places) > 1:
+            both = " and ".join(f"'{written[i].strip()}'" for i in places)
+            raise ChannelError(f"{file}: columns {both} both say the {role}", remedy="delete one of them")
+        if places:
+            at[role] = places[0]
 
     for role, names in NAMES.items():
         look_for(role, names)
@@ -129,15 +132,6 @@ def _roles(file: str, headings: Sequence[tuple[str, str]]) -> dict[str, int]:
     if "count" not in at:
         look_for("count", _OF_OTHERS["count"])
     return at
-
-
-def _place(file: str, headings: Sequence[tuple[str, str]], role: str, names: Sequence[str]) -> int | None:
-    """Return the column with one of the names; None if there is none."""
-    places = [i for i, (name, _) in enumerate(headings) if name in names]
-    if len(places) > 1:
-        both = " and ".join(f"'{headings[i][0]}'" for i in places)
-        raise ChannelError(f"{file}: columns {both} both say the {role}", remedy="delete one of them")
-    return places[0] if places else None
 
 
 def age_of(table: Table, line: int, row: Sequence[str], role: str, unit: str) -> Age:

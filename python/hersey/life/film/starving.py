@@ -14,6 +14,7 @@ from hersey.life.film.shares import StarvesAt
 from hersey.life.film.starved_drag import Flooded, cubic
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval, ages_at_limit, interval, quantiles
 from hersey.life.indicator import OwnAges
+from hersey.life.maintenance import Followed
 from hersey.result import Record
 from hersey.schema.warning import Warning
 
@@ -152,7 +153,10 @@ class LayersOfSpecimens:
         """Return the ages at which the specimens starve at a point, of their draws."""
         quantity = f"ratio of oil layer needed to oil layer at {state.name}"
         last = dict(zip(self.names, self.last.tolist(), strict=True))
-        return ages_at_limit(quantity, age_unit, 1.0, last, own, warnings)
+        begun = np.zeros(len(last)) if self.begun is None else self.begun
+        since = dict(zip(self.names, begun.tolist(), strict=True))
+        followed = Followed(last, since, float((self.last - begun).max()))
+        return ages_at_limit(quantity, age_unit, 1.0, followed, own, warnings)
 
     def with_all(self, own: OwnAges, begun: dict[str, float]) -> OwnAges:
         """Return the draws of all specimens: one that no run shows is new at the age ``begun``."""

@@ -30,6 +30,7 @@ from hersey.life.growth.peaks import peaks
 from hersey.life.growth.points import Points, checked_runs, points_of, warnings_of
 from hersey.life.growth.posterior import Posterior, parameters_of, posterior, resampled
 from hersey.life.indicator import OwnAges
+from hersey.life.maintenance import Followed
 from hersey.result import Means, Result
 from hersey.schema.warning import Warning
 from hersey.units import takes_si
@@ -196,12 +197,16 @@ class Growth(Result):
             self.quantity,
             self.age_unit,
             limit,
-            dict(zip(self.units, self.last_age, strict=True)),
+            self._followed,
             own,
             self.warnings,
             accumulates=accumulates,
             earliest=earliest,
         )
+
+    @property
+    def _followed(self) -> Followed:
+        return Followed.from_new(dict(zip(self.units, self.last_age, strict=True)))
 
     def earliest(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False
@@ -214,7 +219,7 @@ class Growth(Result):
             return None
         ages = self.drawn_ages(limit, limit_error=limit_error, accumulates=accumulates, if_growing=True)
         earliest = Earliest.of(OwnAges(ages[0], np.sort(ages[1], axis=1)))
-        return earliest.within_reach(np.array(self.last_age))
+        return earliest.within_reach(self._followed)
 
     def drawn_ages(
         self, limit: float, *, limit_error: float = 0.0, accumulates: bool = False, if_growing: bool = False

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy import special
 from hersey.arrays import FloatArray
 from hersey.life.growth.marginal import Specimens
 from hersey.life.indicator import OwnAges
+from hersey.life.maintenance import Followed
 from hersey.result import OPEN, Means, Record, Result
 from hersey.schema.warning import Warning
 
@@ -76,6 +77,9 @@ class AgeAtLimit(Record):
     passed: Annotated[
         float, Means("share of draws that have reached it by then")
     ]  #: share of draws that have reached it by then
+    begun: Annotated[
+        float, Means("age of the last maintenance after which it aged from new; 0 without any")
+    ] = 0.0  #: age from which it ages
 
     def __str__(self) -> str:
         """Return the age in words."""
@@ -87,6 +91,15 @@ class AgeAtLimit(Record):
         if self.passed >= FAILED:
             return "failed"
         return "unclear" if self.passed > RUNNING else "running"
+
+    def shown(self, times: float) -> float:
+        """Return the age after so many times the age followed since it ``begun`` to age."""
+        return self.begun + times * max(self.last - self.begun, 0.0)
+
+    @property
+    def far(self) -> bool:
+        """Whether it is beyond `FAR` times the age followed."""
+        return self.age.value > self.shown(FAR) > self.begun
 
     @property
     def outcome(self) -> str:
@@ -161,30 +174,36 @@ def age_at_limit(
     ages: FloatArray,
     last: float = math.nan,
     earliest: float = math.inf,
-    followed: float | None = None,
+    greatest: float = 0.0,
+    begun: float = 0.0,
 ) -> AgeAtLimit:
     """Return the age at the limit of a specimen that was last seen at ``last``, of equally probable ages.
 
     Where most draws do not reach it, the interval begins at ``earliest`` at the latest. It begins at `SURE`
-    times the age ``followed`` (default: ``last``) at the latest, and has no end where the age is beyond `FAR`
-    times that.
+    times the age followed since the specimen ``begun`` to age, and has no end where the age is beyond `FAR`
+    times that. Of the population, and of a specimen not seen since then, the age followed is ``greatest``.
     """
-    seen = last if followed is None else followed
-    of_one = (np.array([each]) for each in (last, earliest, seen))
-    return ages_of_each([name], ages[:, None], *of_one)[0]
+    seen, soonest, since = (np.array([each], dtype=float) for each in (last, earliest, begun))
+    found = ages_of_each([name], ages[:, None], seen, soonest, since, greatest)[0]
+    return replace(found, last=last)  # the same NaN: results are compared
 
 
 def ages_of_each(
-    names: Iterable[str], ages: FloatArray, last: FloatArray, earliest: FloatArray, followed: FloatArray
+    names: Iterable[str],
+    ages: FloatArray,
+    last: FloatArray,
+    earliest: FloatArray,
+    begun: FloatArray,
+    greatest: float,
 ) -> list[AgeAtLimit]:
     """Return `age_at_limit` of each specimen; ``ages`` are (draws, specimens), the others (specimens,)."""
     never, passed = np.isinf(ages).mean(axis=0), (ages <= last).mean(axis=0)
     low, age, high = quantiles(ages)
     low = np.where(np.isinf(age), np.minimum(low, earliest), low)
-    seen = followed > 0.0
-    low = np.where(seen, np.minimum(low, SURE * followed), low)
-    high = np.where(seen & (age > FAR * followed), math.inf, high)
-    columns = (each.tolist() for each in (age, low, high, never, last, passed))
+    seen = np.where(last > begun, last - begun, greatest)
+    low = np.where(seen > 0.0, np.minimum(low, begun + SURE * seen), low)
+    high = np.where((seen > 0.0) & (age > begun + FAR * seen), math.inf, high)
+    columns = (each.tolist() for each in (age, low, high, never, last, passed, begun))
     return [
         AgeAtLimit(name, Interval(*numbers[:3]), *numbers[3:])
         for name, *numbers in zip(names, *columns, strict=True)
@@ -192,11 +211,11 @@ def ages_of_each(
 
 
 def share_of_specimens(
-    ages: FloatArray, share: float, earliest: float = math.inf, followed: float | None = None
+    ages: FloatArray, share: float, earliest: float = math.inf, followed: float = 0.0
 ) -> AgeAtLimit:
     """Age that a share of new specimens has reached, ``ages`` being sorted along the specimens."""
     name = f"B{share * 100:.0f}"
-    return age_at_limit(name, reached_by(ages, share), earliest=earliest, followed=followed)
+    return age_at_limit(name, reached_by(ages, share), earliest=earliest, greatest=followed)
 
 
 def reached_by(ages: FloatArray, share: float) -> FloatArray:
@@ -227,13 +246,14 @@ class Earliest:
             *(min(ages) for ages in zip(*((e.first, e.b10, e.b50) for e in each), strict=True)),
         )
 
-    def within_reach(self, last: FloatArray) -> Earliest:
-        """Return those that runs up to the ages ``last`` of the specimens show: up to `SURE` times that.
+    def within_reach(self, followed: Followed) -> Earliest:
+        """Return those that runs show: up to `SURE` times the age followed.
 
         Of a specimen seen only when new, up to that of all.
         """
-        most = SURE * float(last.max())
-        units = np.minimum(self.units, np.where(last > 0.0, SURE * last, most))
+        last, begun = (np.array(list(ages.values())) for ages in (followed.last, followed.begun))
+        since, most = np.maximum(last - begun, 0.0), SURE * followed.greatest
+        units = np.minimum(self.units, begun + np.where(since > 0.0, SURE * since, most))
         return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
 
     @classmethod
@@ -261,23 +281,23 @@ def ages_at_limit(
     quantity: str,
     age_unit: str,
     limit: float,
-    last: Mapping[str, float],
+    followed: Followed,
     own: OwnAges,
     warnings: tuple[Warning, ...],
     *,
     accumulates: bool = False,
     earliest: Earliest | None = None,
 ) -> AgesAtLimit:
-    """Return what draws of the ages of specimens, last seen at ``last``, and of new ones show.
+    """Return what draws of the ages of specimens, and of new ones, show.
 
     ``accumulates``: the limit is that of the integral of the quantity over age. ``earliest`` is stated of a
     quantity that does not grow.
     """
-    least = earliest or Earliest.unknown(len(last))
+    least = earliest or Earliest.unknown(len(followed.last))
     quantity = f"the sum of {quantity} over age" if accumulates else quantity
-    greatest = max(last.values())
-    seen = np.array(list(last.values()), dtype=float)
-    known = ages_of_each(last, own.known, seen, least.units, np.where(seen > 0.0, seen, greatest))
+    last, begun, greatest = followed
+    seen, since = (np.array([of[name] for name in last], dtype=float) for of in (last, begun))
+    known = ages_of_each(last, own.known, seen, least.units, since, greatest)
     b10, b50 = of_population(np.sort(own.new, axis=1), len(known), least, greatest)
     return AgesAtLimit(quantity, age_unit, limit, tuple(known), b10, b50, warnings, accumulates)
 

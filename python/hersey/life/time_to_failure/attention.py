@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from hersey.errors import sentence
-from hersey.life.growth.limit_ages import Interval, rounded
+from hersey.life.growth.limit_ages import SURE, Interval, rounded
 from hersey.life.time_to_failure.first import SpecimenEnd
 from hersey.result import Means, Record
 
@@ -28,7 +28,7 @@ class Attention(Record):
         float | None,
         Means(
             "age that the running specimens should reach: the least lower end of their intervals, at most "
-            "1.75 times the age followed; null if none is running"
+            f"{SURE:g} times the age followed; null if none is running"
         ),
     ]
 

@@ -71,7 +71,7 @@ def _replacement(
     """The age of least cost; in each draw an age loses what it costs more than the best of that draw."""
     end = FAR * followed
     ages = places(end)
-    survived = np.stack([(first > age).mean(axis=1) for age in ages], axis=1)
+    survived = 1.0 - _failed_by(first, ages)
     lived = np.stack([np.minimum(first, age).mean(axis=1) for age in ages], axis=1)
     cost = costs(survived, lived, cost_of_failure)
     relative = cost / cost[:, -1:]
@@ -92,5 +92,9 @@ def _replacement(
 def _failing_between(first: FloatArray, until: float) -> FloatArray:
     """Share of new specimens that fails between ages, as many of them in each over all draws."""
     ages = np.quantile(np.minimum(first, until), np.arange(1, _PARTS) / _PARTS)
-    failed = np.stack([(first <= age).mean(axis=1) for age in ages], axis=1)
-    return np.diff(failed, axis=1, prepend=0.0, append=1.0)
+    return np.diff(_failed_by(first, ages), axis=1, prepend=0.0, append=1.0)
+
+
+def _failed_by(first: FloatArray, ages: FloatArray) -> FloatArray:
+    """Share of new specimens that has failed by ages, (draws, ages)."""
+    return np.stack([(first <= age).mean(axis=1) for age in ages], axis=1)

@@ -163,8 +163,9 @@ class TimeToFailure(Result):
             f"age{of_unit} at which half of new specimens reach each limit, if it were the only one",
         ]
         half = [(mode, mode.ages.b50) for mode in self.modes if mode.ages.b50 is not None]
-        soon = FAR * max(each.age.last for each in self.units)
-        far = [mode.name for mode, b50 in half if mode.grows and b50.age.value > soon]
+        far = [
+            mode.name for mode, b50 in half if mode.grows and b50.age.value > FAR * max(mode.growth.last_age)
+        ]
         for mode, b50 in half:
             sign = " (a precursor, not a failure)" if mode.sign else ""
             if mode.name not in far:
@@ -221,7 +222,8 @@ class TimeToFailure(Result):
         share, asked = self.share_failing, {"replacement": "when to replace"}
         if share is not None:
             asked["share"] = share.question(self.age_unit)
-        later = [] if share is None else [share.advice(self.age_unit)]
+        oldest = max(each.age.last for each in self.units)
+        later = [] if share is None else [share.advice(self.age_unit, oldest)]
         runs = [each.words(self.age_unit, asked[each.question]) for each in self.deciding_runs]
         return [*filter(None, later), *runs]
 
@@ -316,7 +318,7 @@ def time_to_failure(
     units, picks = ends_of_specimens(ending, of_runs, names, last, random)
     order = joint_order(ending, of_runs, random)
     new = np.stack(list(ages_of_new(ending, order, random)))
-    greatest = float(indicators.runs.age.max())
+    greatest = min(each.followed.greatest for each in ending)
     first = np.sort(new.min(axis=0), axis=1)
     least = Earliest.of_first([each.earliest for each in ending])
     b10, b50 = of_population(first, len(units), least, greatest)
@@ -328,13 +330,13 @@ def time_to_failure(
         age_unit=indicators.runs.age_unit,
         modes=modes,
         units=units,
-        ageing=ageing_of(ending, greatest, asked.until),
+        ageing=ageing_of(ending, float(indicators.runs.age.max()), asked.until),
         b10=b10,
         b50=b50,
         shares=_shares(ending, new) if known else None,
         curve=_curve(first, greatest) if known else None,
         until=asked.until,
-        followed_failing=failing_of_followed(ending, order, asked.until, np.array(list(last.values()))),
+        followed_failing=failing_of_followed(ending, order, asked.until, [each.age for each in units]),
         share_failing=of_new.share,
         replacement=of_new.replacement,
         next_runs=tuple(runs),

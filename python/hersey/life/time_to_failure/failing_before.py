@@ -9,7 +9,17 @@ from typing import Annotated, Literal
 import numpy as np
 
 from hersey.arrays import FloatArray, IntArray
-from hersey.life.growth.limit_ages import FAILED, FAR, RUNNING, SURE, Interval, interval, percent, rounded
+from hersey.life.growth.limit_ages import (
+    FAILED,
+    FAR,
+    RUNNING,
+    SURE,
+    AgeAtLimit,
+    Interval,
+    interval,
+    percent,
+    rounded,
+)
 from hersey.life.time_to_failure.ageing import after
 from hersey.life.time_to_failure.way import FittedWay
 from hersey.result import Means, Record
@@ -32,7 +42,7 @@ class ShareFailing(Record):
         Literal["yes", "no", "not yet decided"], Means("whether at most the allowed share fails")
     ]
     shown: Annotated[
-        float, Means("age before which runs can show that few fail: 1.75 times the age followed")
+        float, Means(f"age before which runs can show that few fail: {SURE:g} times the age followed")
     ]
 
     def words(self, age_unit: str) -> str:
@@ -57,14 +67,18 @@ class ShareFailing(Record):
         share = f"{100.0 * self.allowed:.3g} %"
         return f"whether at most {share} of new specimens fail before {rounded(self.age, 6)}{unit}"
 
-    def advice(self, age_unit: str) -> str:
-        """Return how far to follow the specimens where the age is later than runs show; else empty."""
+    def advice(self, age_unit: str, oldest: float) -> str:
+        """Return how far to follow the specimens where the age is later than runs show; else empty.
+
+        ``oldest`` is the greatest age of a specimen: where runs show less, maintenance began it anew.
+        """
         if self.age <= self.shown or self.answer == "no":
             return ""
         least = after(self.age / SURE, age_unit)
+        anew = " without maintenance" if self.shown < SURE * oldest else ""
         return (
-            f"follow the specimens to {least} to decide {self.question(age_unit)}: runs show ages up to "
-            f"{SURE:g} times that followed"
+            f"follow the specimens to {least}{anew} to decide {self.question(age_unit)}: runs show ages up "
+            f"to {SURE:g} times that followed"
         )
 
 
@@ -93,7 +107,7 @@ def failing_share(first: FloatArray, age: float, allowed: float, followed: float
     first
         Draws of the ages of first failure of new specimens, (draws, specimens).
     followed
-        Greatest age of the runs: what fails beyond 1.75 times that may be more, beyond 3 times that unknown.
+        Greatest age of the runs: what fails beyond `SURE` times that may be more, beyond `FAR` times unknown.
     """
     shown = SURE * followed
     drawn = (first <= min(age, FAR * followed)).mean(axis=1)
@@ -108,18 +122,19 @@ def failing_share(first: FloatArray, age: float, allowed: float, followed: float
 
 
 def failing_of_followed(
-    ending: Sequence[FittedWay], order: IntArray, age: float | None, last: FloatArray
+    ending: Sequence[FittedWay], order: IntArray, age: float | None, units: Sequence[AgeAtLimit]
 ) -> FollowedFailing | None:
     """Return how many of the specimens followed have failed by an age, by any mode; None without an age.
 
-    ``order`` is as from `joint_order`: what all specimens share is common to a draw. ``last`` is the age at
-    which each specimen was last seen: it may fail from 1.75 times that on.
+    ``order`` is as from `joint_order`: what all specimens share is common to a draw. ``units`` are the
+    ages of first failure: a specimen may fail from `SURE` times the age followed on.
     """
     if age is None:
         return None
     first = np.min([each.ages[order[:, m]] for m, each in enumerate(ending)], axis=0)
-    failed = first <= min(age, FAR * float(last.max()))
-    count, unsure = interval(failed.sum(axis=1).astype(float)), SURE * last < age
+    failed = first <= min(age, max(each.shown(FAR) for each in units))
+    count = interval(failed.sum(axis=1).astype(float))
+    unsure = np.array([each.shown(SURE) for each in units]) < age
     if unsure.any():
         most = interval(failed[:, ~unsure].sum(axis=1).astype(float)).high + unsure.sum()
         count = Interval(count.value, count.low, float(most))

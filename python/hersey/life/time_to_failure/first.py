@@ -17,8 +17,8 @@ from hersey.result import Means, Record
 
 #: Ways are named until they hold so much of the probability of being first.
 NAMED = 0.9
-#: A way is named from this probability on, and where its age is so little later than the first.
-MENTIONED, NEAR = 0.05, 1.25
+#: A way is named from this probability to be first on, and from a probability to come up to so much later.
+MENTIONED, CLOSE, NEAR = 0.05, 0.2, 1.25
 #: Ways that a table names: the fewest that hold so much of that probability.
 LIKELY = 0.8
 #: Stands for the failure mode of a specimen that no mode can be expected to end.
@@ -37,8 +37,9 @@ class SpecimenEnd(Record):
         dict[str, float], Means("probability of each mode to come first")
     ]  #: probability of each way to be the first; the rest is that none comes
     near: Annotated[
-        tuple[str, ...], Means("modes whose own age is at most 25 % later than the first")
-    ]  #: ways whose own age, the middle one, is up to 25 % later than the first
+        tuple[str, ...],
+        Means("modes that come at most 25 % later than the first with a probability of 20 % or more"),
+    ]  #: ways that may come up to 25 % later than the first
 
     @property
     def named(self) -> tuple[str, ...]:
@@ -86,7 +87,7 @@ class SpecimenEnd(Record):
         text = " or ".join(f"{name} ({self.first[name]:.0%})" for name in likely) or "no known failure mode"
         expected = math.isfinite(self.age.age.value)
         behind = [name for name in self.named if name not in likely and expected]
-        return text + (f", close behind {' and '.join(behind)}" if behind else "")
+        return text + (f", perhaps soon followed by {' and '.join(behind)}" if behind else "")
 
     def __str__(self) -> str:
         """Return it in words."""
@@ -113,14 +114,16 @@ def ends_of_specimens(
     joint = np.stack([np.take_along_axis(e.ages, own, axis=0) for e, own in zip(ending, order, strict=True)])
     first = joint.min(axis=0)
     seen = np.array([last[name] for name in names])
+    begun = np.max([[each.followed.begun[name] for name in names] for each in ending], axis=0)
     least = np.min([each.earliest.units for each in ending], axis=0)
-    ends = ages_of_each(names, first, seen, least, np.where(seen > 0.0, seen, max(last.values())))
-    ways, middle = [each.mode.name for each in ending], np.stack([each.medians for each in ending])
+    greatest = min(each.followed.greatest for each in ending)
+    ends = ages_of_each(names, first, seen, least, begun, greatest)
+    ways = [each.mode.name for each in ending]
+    soon = np.isfinite(first) & (joint <= NEAR * first)
     found = []
-    for end, shares, ages in zip(ends, _firsts(joint).T.tolist(), middle.T.tolist(), strict=True):
-        own = zip(ways, ages, strict=True)
-        near = tuple(way for way, age in own if age <= NEAR * end.age.value < np.inf)
-        found.append(SpecimenEnd(end.unit, end, dict(zip(ways, shares, strict=True)), near))
+    for end, shares, near in zip(ends, _firsts(joint).T.tolist(), soon.mean(axis=1).T.tolist(), strict=True):
+        close = tuple(way for way, share in zip(ways, near, strict=True) if share >= CLOSE)
+        found.append(SpecimenEnd(end.unit, end, dict(zip(ways, shares, strict=True)), close))
     return tuple(found), Picks(order, first)
 
 

@@ -14,7 +14,7 @@ from hersey.life.age import Age
 from hersey.life.replacement import cost_ratio
 
 #: Least share, and greatest ratio of costs: beyond, all depends on less than a hundredth of the specimens.
-_LEAST, _MOST = 0.01, 100.0
+_LEAST_SHARE, _GREATEST_RATIO = 0.01, 100.0
 _WHY = "as a life test does not show when the first hundredth of new specimens fails"
 
 
@@ -62,11 +62,11 @@ def questions_of(
     age = _age_of(until, unit)
     if share is not None:
         share = _number("share", share)
-        if not _LEAST <= share < 1.0:
-            reason = f", {_WHY}" if 0.0 < share < _LEAST else ""
+        if not _LEAST_SHARE <= share < 1.0:
+            reason = f", {_WHY}" if 0.0 < share < _LEAST_SHARE else ""
             raise ParameterError(
-                f"{Setting('share').to()} is {100 * share:g} %: it must be at least {100 * _LEAST:g} % and "
-                f"below 100 %{reason}",
+                f"{Setting('share').to()} is {100 * share:g} %: it must be at least {100 * _LEAST_SHARE:g} % "
+                f"and below 100 %{reason}",
                 quantity="share",
             )
         if age is None:
@@ -74,7 +74,7 @@ def questions_of(
             raise ParameterError(f"{Setting('share').to()} needs the age: add {example}", quantity="share")
     cost = None
     if cost_of_failure is not None:
-        cost = cost_ratio(_number("cost_of_failure", cost_of_failure), _MOST, _WHY)
+        cost = cost_ratio(_number("cost_of_failure", cost_of_failure), _GREATEST_RATIO, _WHY)
     return Questions(age, share, cost)
 
 

@@ -14,7 +14,7 @@ from hersey.errors import HerseyError, InsufficientDataError
 from hersey.life.growth.fit import Growth, fit_growth
 from hersey.life.growth.limit_ages import AgesAtLimit, Earliest, ages_at_limit
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges
-from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Stretch
+from hersey.life.maintenance import OF_DAMAGE, OF_FRICTION, Followed, Stretch
 from hersey.result import Means, Record
 from hersey.schema.warning import Warning
 
@@ -55,12 +55,12 @@ class FittedWay:
     residuals: FloatArray  #: per run of the campaign, NaN where it does not show it
     row: dict[str, int]  #: of each specimen that the growth knows
     error: float  #: of a run, typically
-    begun: dict[str, float]  #: age of each specimen from which it grows
+    followed: Followed
     earliest: Earliest  #: none where growth shows
 
     def drawn_values(self, unit: str, age: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return draws of the indicator of a specimen at ages, as `Growth.drawn_values`."""
-        return self.mode.growth.drawn_values(self.row[unit], age - self.begun[unit])
+        return self.mode.growth.drawn_values(self.row[unit], age - self.followed.begun[unit])
 
     @cached_property
     def order(self) -> IntArray:
@@ -110,7 +110,8 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     if each.own_ages is None and not grows:
         drawn = _drawn_ages(each, growth, row, of_runs.begun, seed, if_growing=True)
         if_grown = OwnAges(drawn.known, np.sort(drawn.new, axis=1))
-    earliest = Earliest.of(if_grown).within_reach(np.array(list(last.values())))
+    followed = Followed(last, of_runs.begun, float(of_runs.age.max()))
+    earliest = Earliest.of(if_grown).within_reach(followed)
     warnings = [*each.warnings, *growth.warnings]
     missing = [name for name in last if name not in row]
     if missing and each.own_ages is None:
@@ -119,7 +120,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
         each.name,
         runs.age_unit,
         each.limit,
-        last,
+        followed,
         own,
         tuple(warnings),
         accumulates=each.accumulates,
@@ -142,7 +143,7 @@ def fitted_way(indicators: Indicators, each: Indicator, seed: int, known: Growth
     )
     error = float(np.median(each.error[known_runs]))
     least = Earliest.unknown(len(last)) if grows else earliest
-    return FittedWay(mode, own.known, own.new, residuals, row, error, of_runs.begun, least)
+    return FittedWay(mode, own.known, own.new, residuals, row, error, followed, least)
 
 
 def fitted_ways(
