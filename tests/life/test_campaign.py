@@ -26,6 +26,7 @@ from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry, dwells
 from hersey.life.campaign import store as storing
 from hersey.life.campaign.conversion import entry_of, points_of
+from hersey.life.campaign.guarded import GuardedConnection
 from hersey.log.impossible import Impossible
 from hersey.log.impossible import Reason as Cause
 from hersey.schema.domain import Domain
@@ -72,6 +73,29 @@ def campaign(tmp_path: Path) -> Iterator[Campaign]:
 def add(campaign: Campaign, run_csv: Path, unit: str = "F12", age: str = "1000 pages", **more: bool) -> str:
     points = hersey.SteadyPoints.from_table(run_csv)
     return campaign.add(points, log=run_csv, unit=unit, age=age, **more).outcome
+
+
+def test_what_was_read_is_not_read_again_until_the_file_changes(
+    campaign: Campaign, run_csv: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add(campaign, run_csv)
+    said, execute = [], GuardedConnection.execute
+
+    def counted(self: GuardedConnection, sql: str, parameters: Any = (), /) -> sqlite3.Cursor:
+        said.append(sql)
+        return execute(self, sql, parameters)
+
+    def read() -> set[str]:
+        said.clear()
+        for each in (campaign.runs, campaign.drives, campaign.measured, campaign.dwells):
+            each()
+        return set(said) - {"PRAGMA data_version"}
+
+    monkeypatch.setattr(GuardedConnection, "execute", counted)
+    assert len([sql for sql in read() if "FROM dwells NOT INDEXED" in sql]) == 1  # the check of all dwells
+    assert read() == set()
+    campaign.add_entries([(another(1), "F13", Age(0.0, "pages"))])
+    assert len(campaign.drives()) == len(campaign.runs()) == 2
 
 
 def test_the_numbers_for_computing_are_those_of_the_dwells(campaign: Campaign, run_csv: Path) -> None:
