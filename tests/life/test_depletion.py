@@ -215,7 +215,7 @@ def fitted(share: float, **common: float) -> tuple[LayerFit, FloatArray]:
     given = np.ones(speed.shape, dtype=bool)
     bare = FilledDwells(speed, kelvin, np.ones(speed.shape), np.full(speed.shape, 1e-3), given)
     fit = LayerFit.of(bare, machine, speed=COLD[0], kelvin=COLD[1], other=(COLD[0], 453.15))
-    (search,) = fit._searches(1, Common.beforehand(0.1, 0.0))
+    search = fit._search(slice(None), Common.beforehand(0.1, 0.0))
     free = search.start(0.0)
     free[:, LAYER] = np.linspace(-2.0, 1.0, 6)
     free[:, ROLLING] = logit(share) - logit(fit.computed_share)

@@ -305,6 +305,8 @@ def test_other_refusals() -> None:
             growth.reaches(limit)
     with pytest.raises(ParameterError, match="negative or not a number"):
         growth.at([-1.0])
+    with pytest.raises(ParameterError, match="has no runs here"):
+        growth.at([1.0], units=["nobody"])
 
 
 def test_priors_are_those_of_the_docstring() -> None:

@@ -60,10 +60,13 @@ def log_layer(
     power
         p.
     """
-    lost = np.clip(power * evaporation * age, _LEAST_LOST, _MOST_LOST)
+    lost = np.asarray(np.clip(power * evaporation * age, _LEAST_LOST, _MOST_LOST))
     more = np.expm1(lost)
-    # SciPy's exprel takes twenty times as long as this division
-    return np.asarray(np.log(new * (1.0 + more) + side_flow * age * (more / lost)) / -power)
+    # SciPy's exprel takes twenty times as long as this division; arrays may be large, so their room is reused
+    layer = side_flow * age * np.divide(more, lost, out=lost)
+    more += 1.0
+    layer = new * more + layer
+    return np.asarray(np.log(layer) / -power)
 
 
 def age_of_layer(

@@ -20,6 +20,8 @@ from hersey.schema.warning import Warning
 
 #: Ages looked at, over the greatest of the data; past the last it counts as never.
 _AGES = np.concatenate([[0.0], np.geomspace(3e-3, 10.0, 110)])
+#: Layers of draws that are computed at once.
+_AT_ONCE = 200_000
 #: How far the law of film and starvation may be off, ln of layer over film, in common to all specimens, as
 #: films by other laws showed (`benchmarks/starvation.py`); film over roughness below which faces that touch
 #: make it more; and the power by which they do.
@@ -180,6 +182,12 @@ def _ages_below(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArr
 
     ``off`` is the error of ln of layer over film that all specimens have in common, of each draw.
     """
+    many = max(1, _AT_ONCE // (own[0].size // own.shape[-1] * _AGES.size))
+    blocks = [slice(first, first + many) for first in range(0, len(own), many)]
+    return np.concatenate([_ages_of_some(drawn, own[some], point, off[some]) for some in blocks])
+
+
+def _ages_of_some(drawn: Depletion, own: FloatArray, point: Flooded, off: FloatArray) -> FloatArray:
     ages = _AGES * drawn.greatest_age
     above = drawn.over_starved(own, ages, point) + off[..., None]
     below = above <= 0.0

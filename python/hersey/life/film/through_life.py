@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread
+from hersey.arrays import BoolArray, FloatArray, IntArray, one_thread, side_by_side
 from hersey.errors import InsufficientDataError, ParameterError
 from hersey.life.film.depletion_draws import fit_depletion, pooled
 from hersey.life.film.depletion_law import Depletion
@@ -268,7 +268,7 @@ def _followed(
     """The layers of all specimens whatever the share of other drag, and ages at each share."""
     by, point = read.by_share, read.flooded[0]
     some = runs.some(by.some)
-    each = [drawing(layers, some.place, some.age) for layers in by.layers]
+    each = list(side_by_side(lambda layers: drawing(layers, some.place, some.age), by.layers))
     starves = [
         starves_at(LayersOfSpecimens(drawn, some.names, some.last), point, share)
         for drawn, share in zip(each, SHARES.tolist(), strict=True)
