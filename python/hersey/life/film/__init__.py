@@ -11,6 +11,7 @@ depletion_law   how the layer thins over ages and specimens
 depletion_draws draws of that law
 of_runs         the film that each run shows, and starvation as an indicator
 starving        when specimens starve, and the oil that they have left
+warnings        what is not known of it
 through_life    `film_life`: film, oil that is left, ages at which specimens starve
 ==============  ===============================================================================
 """

@@ -21,6 +21,7 @@ from hersey.life.film.of_runs import Estimates, FilmOfRuns, FilmPoint, film_of_r
 from hersey.life.film.shares import SHARES, OtherDrag, other_drag, slower_by_share
 from hersey.life.film.starved_drag import film_of
 from hersey.life.film.starving import LayersOfSpecimens, OilLeft, starves_at
+from hersey.life.film.warnings import of_other_drag, of_the_law
 from hersey.life.growth.limit_ages import AgesAtLimit, Interval
 from hersey.life.indicator import Indicator, Indicators, Runs, most_ages
 from hersey.life.maintenance import OF_FRICTION
@@ -239,7 +240,7 @@ def film_life(
     layers = layers.of(read.runs.units, segments.begun)
     oldest = {read.runs.unit[i]: float(read.runs.age[i]) for i in _last_runs(read.runs)}
     layers = replace(layers, last=np.array([oldest[name] for name in layers.names]))
-    warnings = (*read.warnings, *_of_the_law(age, place, machine), _of_other_drag(other, read))
+    warnings = (*read.warnings, *of_the_law(age, place, machine), of_other_drag(other, read))
     return _film_life(read, layers, segments.begun, machine, track, other, warnings)
 
 
@@ -327,58 +328,6 @@ def _film_life(
         warnings=warnings,
         _starvation=replace(read.indicator((warnings[-1],)), own_ages=layers.with_all(starving[0], begun)),
     )
-
-
-def _of_other_drag(other: OtherDrag, read: FilmOfRuns) -> Warning:
-    """How the ages depend on the drag that does not follow the film."""
-    few, many = other.starves[0], other.starves[-1]
-    return Warning(
-        "other drag",
-        "{low:.0f %} to {high:.0f %} of the drag at {point} may not follow the film (rolling, seals, gears). "
-        "With more such drag specimens starve {direction}: the median one at {few} {age_unit} if it is "
-        "{least:.0f %}, at {many} {age_unit} if it is {most:.0f %}. To determine it, log a specimen flooded "
-        "with fresh lubricant, the drive without the nip, or a lubricant of another viscosity",
-        severity="note" if other.determined else "watch",
-        low=other.low,
-        high=other.high,
-        point=read.points[0].name,
-        age_unit=read.runs.age_unit,
-        least=few.share,
-        few=few.shown,
-        most=many.share,
-        many=many.shown,
-        direction="sooner" if other.sooner else "later",
-    )
-
-
-def _of_the_law(age: FloatArray, place: IntArray, machine: Machine) -> list[Warning]:
-    warnings = []
-    if most_ages(place, age) < 3:
-        warnings.append(
-            Warning(
-                "two ages at most",
-                "no specimen was measured at three ages, so side flow and evaporation cannot be "
-                "distinguished",
-                severity="watch",
-            )
-        )
-    if machine.asperities is None:
-        warnings.append(
-            Warning(
-                "no asperities",
-                "the machine file has no asperities, so dwells with a film below four times the "
-                "roughness are excluded",
-                severity="watch",
-            )
-        )
-    warnings.append(
-        Warning(
-            "nip taken as constant",
-            "the nip is assumed constant. Thicker oil changes torque at all dwells, a thin layer only "
-            "at cold and fast ones; a nip that widens with age would look like thicker oil",
-        )
-    )
-    return warnings
 
 
 def _last_runs(runs: Runs) -> list[int]:

@@ -26,7 +26,7 @@ CONFIDENCE = 0.9
 DEVIATIONS = 1.645
 #: A law is fitted up to the last run, and growth may depart from it later: what the law does at age t comes
 #: at last (t / last)^k. Standard deviations of ln k in common to all specimens and of each alone.
-BEYOND, OWN_BEYOND = 0.15, 0.12
+BEYOND, OWN_BEYOND = 0.12, 0.12
 #: Share of draws from which it is worth a word that they do not reach a limit.
 _SAID = 0.05
 #: Probability of having failed from which a specimen has failed, and up to which it is still running.

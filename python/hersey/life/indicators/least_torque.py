@@ -17,8 +17,8 @@ from hersey.life.indicators.torque_surface import TorqueSurface
 
 #: Runs that show what is alike in all, at the most; draws of each error.
 RUNS, DRAWS = 24, 32
-#: Share of the error between the dwells that is left once the least has been put back.
-_LEFT = 0.5
+#: Share of the error between the dwells that is left once the least is put back, as found in life tests.
+_LEFT = 1.0 / 3.0
 
 
 class LeastTorque(NamedTuple):
