@@ -6,7 +6,7 @@ import os
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import copy_context
 from typing import Any, TypeVar
 
@@ -91,9 +91,15 @@ def side_by_side(function: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     It pays where arrays are large: NumPy computes them beside each other. An item must not need another's
     result; then the number of threads changes no bit.
     """
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    threads = min(processors, len(items))
     contexts = [copy_context() for _ in items]
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        yield from pool.map(lambda context, each: context.run(function, each), contexts, items)
+    with ThreadPoolExecutor(max(threads, 1)) as pool:
+        found: Iterator[R] = map(function, items)
+        if threads > 1:
+            with suppress(RuntimeError):  # memory is too short for a thread
+                found = pool.map(lambda context, each: context.run(function, each), contexts, items)
+        yield from found
 
 
 def numbers_of(name: str, value: ArrayLike) -> FloatArray:

@@ -39,11 +39,19 @@ def test_the_error_of_a_run_is_that_of_repeated_runs(found: list[LeastTorque]) -
     assert np.median([each.whole for each in found]) > np.median([each.error for each in found])
 
 
-def test_what_smoothing_moves_is_put_back(found: list[LeastTorque]) -> None:
-    away = np.mean([each.log_speed for each in found]) - np.log(LEAST)
-    moved, left = alike_in_all(found)
-    assert away > 0.03  # to the side where torque rises less
-    assert abs(away - moved) < min(0.5 * away, left)
+@pytest.mark.parametrize("noise", [0.02, 0.04])
+def test_what_is_left_of_smoothing_is_within_its_error(noise: float) -> None:
+    """The mean of 240 runs is off by what smoothing moves; put back it is off by no more than is said."""
+    dwells = runs(noise, 240)
+    kernel = shared_kernel(dwells)
+    surfaces = [TorqueSurface(each, kernel) for each in dwells]
+    drawn = [each.drawn(GRID, np.nan, 32, seed=0) for each in surfaces[:24]] + [None] * 216
+    least = [least_torque(each, GRID, np.nan, curves) for each, curves in zip(surfaces, drawn, strict=True)]
+    away = np.nanmean([each.log_speed for each in least]) - np.log(LEAST)
+    moved, left = alike_in_all(least)
+    assert away > 0.0
+    assert moved > 0.0
+    assert abs(away - moved) < left
 
 
 def test_a_least_at_an_end_is_not_known() -> None:

@@ -16,7 +16,7 @@ import pytest
 
 import hersey
 from hersey.charts.growth import growth_chart
-from hersey.errors import ChannelError, ParameterError, UnitError, UnreadableLogError
+from hersey.errors import ChannelError, InsufficientDataError, ParameterError, UnitError, UnreadableLogError
 from hersey.life.age import Age
 from hersey.life.campaign import Campaign, read_runs
 from hersey.life.campaign.store import SCHEMAS
@@ -127,7 +127,16 @@ def test_of_a_specimen_re_greased_after_its_last_run_the_others_show_how_far() -
     followed = Followed({"A": 300.0, "B": 300.0}, {"A": 0.0, "B": 350.0}, 300.0)
     found = ages_at_limit("torque", "pages", 2.0, followed, own, ())
     assert [each.age.low for each in found.units] == [525.0, 350.0 + 525.0]
-    assert [each.far for each in found.units] == [True, False]
+    assert [each.shown(2.0) for each in found.units] == [600.0, 350.0 + 600.0]
+    assert [each.far for each in found.units] == [True, True]
+
+
+def test_a_film_of_specimens_not_seen_since_maintenance_is_not_followed() -> None:
+    whole: Any = shipped.campaign(2)
+    events = [Event(unit, Age(180000.0, "pages"), "re-greased") for unit in ("U1", "U2")]
+    whole.events = lambda: events
+    with pytest.raises(InsufficientDataError, match="no specimen has a run since"):
+        hersey.film_life(whole, shipped.machine())
 
 
 def test_the_chart_shows_the_age_of_the_specimen_and_a_mark_at_the_event(

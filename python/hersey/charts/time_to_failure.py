@@ -34,8 +34,8 @@ _LATER = "later"
 def time_to_failure_chart(found: TimeToFailure) -> Chart:
     """Return the failure modes of each specimen, above the share of new ones that has failed, if known.
 
-    A mark with its 90 % interval for each way, that which is most probably first filled; ways of which no
-    more is known than that they come later are counted. Of many units those that end first are shown.
+    A mark with its 90 % interval for each mode, the most probable first one filled. Modes known only to come
+    later are counted. Of many specimens those that fail first are shown.
     """
     greatest = max(each.age.last for each in found.units)
     shown = sorted(found.units, key=lambda each: each.age.age.value)[:_SHOWN]

@@ -184,15 +184,18 @@ def uses_beside(
         indicators if stated else _in_use(asked, machine, indicators, *each).without_runs(excluded)
         for each, stated in zip(conditions, as_it_is, strict=True)
     ]
-    ways.fit(every)
+    unknown = ways.unknown(every)
     uses: list[Use] = []
-    total = max(len(limits), 1) * len(conditions)
+    total = len(unknown) + max(len(limits), 1) * len(conditions)
+    for done, _ in enumerate(side_by_side(lambda pair: ways.followed(*pair), unknown), 1):
+        if progress:
+            progress(done, total)
     for (coldest, duty), stated, here in zip(conditions, as_it_is, every, strict=True):
         for torque in limits or (None,):
             ends = ways.ends(here, torque)
             uses.append(Use(torque, coldest, duty, stated and torque == limit, *ends))
             if progress:
-                progress(len(uses), total)
+                progress(len(unknown) + len(uses), total)
     return OtherUses(indicators.runs.age_unit, limits, starts, duties, tuple(uses))
 
 
@@ -209,19 +212,17 @@ class _Ways:
         growth = {mode.name: mode.growth for mode in found.modes}
         self._growth |= {_key(each): growth[each.name] for each in indicators.each if each.name in growth}
 
-    def fit(self, uses: Sequence[Indicators]) -> None:
-        """Fit the growths that are not known yet."""
+    def unknown(self, uses: Sequence[Indicators]) -> list[tuple[Indicators, Indicator]]:
+        """Return the indicators whose growth is not known yet, each once."""
         new = {_key(each): (here, each) for here in uses for each in _limited(here, None)}
-        unknown = [pair for key, pair in new.items() if key not in self._growth]
-        for _ in side_by_side(lambda pair: self._followed(*pair), unknown):
-            pass
+        return [pair for key, pair in new.items() if key not in self._growth]
 
     def ends(
         self, indicators: Indicators, torque: float | None
     ) -> tuple[tuple[UseEnd, ...], Interval | None, Interval | None]:
         """The first ends, B10 and B50, drawn as `time_to_failure` does; none where no way can be followed."""
         chosen = sorted(_limited(indicators, torque), key=lambda each: self._place(each.name))
-        ways = [way for each in chosen if (way := self._followed(indicators, each)) is not None]
+        ways = [way for each in chosen if (way := self.followed(indicators, each)) is not None]
         if not ways:
             return (), None, None
         random = np.random.default_rng([self._seed, 2])
@@ -239,7 +240,7 @@ class _Ways:
     def _place(self, name: str) -> int:
         return self._places.get(name, len(self._places))
 
-    def _followed(self, indicators: Indicators, each: Indicator) -> FittedWay | None:
+    def followed(self, indicators: Indicators, each: Indicator) -> FittedWay | None:
         grown = _key(each)
         key = *grown, each.limit
         if key not in self._known:

@@ -222,10 +222,11 @@ class Campaign:
         ParameterError
             If there is no such specimen.
         """
-        listed: pl.DataFrame = self._kept.read(
-            f"runs of {unit}", lambda _: runs_of(self._database, self.path, unit)
-        )
-        return listed.clone()  # whoever asks may change it
+        if unit:
+            with sqlite_errors(self.path):
+                return runs_of(self._database, self.path, unit)
+        every: pl.DataFrame = self._kept.read("runs", lambda _: runs_of(self._database, self.path, ""))
+        return every.clone()  # whoever asks may change it
 
     def points(self, run: int) -> SteadyPoints:
         """Return the steady points of a run as they were added; rows of the log are not kept.

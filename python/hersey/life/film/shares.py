@@ -104,7 +104,7 @@ def by_share(fit: LayerFit, units: list[str], young: BoolArray) -> ByShare:
     some = _some_runs(units)
     part = replace(fit, dwells=fit.dwells.rows(some))
     layers = tuple(part.layers(each.common) for each in found)
-    # Where the law errs all runs err alike, so all of them count as one.
+    # All runs err alike where the law errs, so they count as one.
     unlikely = np.array([each.unlikely for each in found])
     unlikely += [_off_level(each, fit.level, young[some]) for each in layers]
     weight = _BEFOREHAND * np.exp(-0.5 * (unlikely - unlikely.min()))

@@ -157,7 +157,7 @@ class LayersOfSpecimens:
         last = dict(zip(self.names, self.last.tolist(), strict=True))
         begun = np.zeros(len(last)) if self.begun is None else self.begun
         since = dict(zip(self.names, begun.tolist(), strict=True))
-        followed = Followed(last, since, float((self.last - begun).max()))
+        followed = Followed(last, since, self.drawn.greatest_age)
         return ages_at_limit(quantity, age_unit, 1.0, followed, own, warnings)
 
     def with_all(self, own: OwnAges, begun: dict[str, float]) -> OwnAges:

@@ -238,6 +238,8 @@ def film_life(
     last = np.array([age[place == k].max() for k in range(len(names))])
     layers, other = _followed(read, SpecimensOfRuns(names, place, age, last), machine, drawing, seed)
     layers = layers.of(read.runs.units, segments.begun)
+    if not layers.names:
+        raise InsufficientDataError("no specimen has a run since its last maintenance. Add one")
     oldest = {read.runs.unit[i]: float(read.runs.age[i]) for i in _last_runs(read.runs)}
     layers = replace(layers, last=np.array([oldest[name] for name in layers.names]))
     warnings = (*read.warnings, *of_the_law(age, place, machine), of_other_drag(other, read))

@@ -80,6 +80,9 @@ class AgeAtLimit(Record):
     begun: Annotated[
         float, Means("age of the last maintenance after which it aged from new; 0 without any")
     ] = 0.0  #: age from which it ages
+    followed: Annotated[
+        float, Means("age followed since then; that of all specimens if it was not seen since then")
+    ] = 0.0  #: age followed since then
 
     def __str__(self) -> str:
         """Return the age in words."""
@@ -94,7 +97,7 @@ class AgeAtLimit(Record):
 
     def shown(self, times: float) -> float:
         """Return the age after so many times the age followed since it ``begun`` to age."""
-        return self.begun + times * max(self.last - self.begun, 0.0)
+        return self.begun + times * self.followed
 
     @property
     def far(self) -> bool:
@@ -203,7 +206,7 @@ def ages_of_each(
     seen = np.where(last > begun, last - begun, greatest)
     low = np.where(seen > 0.0, np.minimum(low, begun + SURE * seen), low)
     high = np.where((seen > 0.0) & (age > begun + FAR * seen), math.inf, high)
-    columns = (each.tolist() for each in (age, low, high, never, last, passed, begun))
+    columns = (each.tolist() for each in (age, low, high, never, last, passed, begun, seen))
     return [
         AgeAtLimit(name, Interval(*numbers[:3]), *numbers[3:])
         for name, *numbers in zip(names, *columns, strict=True)

@@ -67,11 +67,6 @@ class FittedWay:
         """Draws of each specimen in the order of their ages, (draws, specimens)."""
         return np.asarray(np.argsort(self.ages, axis=0, kind="stable"))
 
-    @cached_property
-    def medians(self) -> FloatArray:
-        """Median age of each specimen."""
-        return np.asarray(np.median(self.ages, axis=0))
-
     @property
     def middle(self) -> FloatArray:
         """Age that half of the new specimens of each draw has reached, (draws,)."""
