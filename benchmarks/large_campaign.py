@@ -1,8 +1,8 @@
 """How long a life test of 5,000 runs takes: list, add one run, check, and follow it to its failures.
 
 Specimens of the virtual test stand at ten ages each, 95 dwells a run, in a campaign file. Each command is a
-process of its own; its time is compared with a limit. On two cores that others kept busy too (2026-11-27):
-list 0.5 to 1.0 s wall (0.5 s of processor), life 83 s wall (70 s of processor; 95 s before).
+process of its own; its time is compared with a limit. On two busy cores (2026-11-27): list 0.5 to 1.1 s wall
+(0.6 s of processor), life 83 s wall (70 s of processor; 95 s wall before).
 
 Usage: python -m benchmarks.large_campaign [--specimens 500] [--file build/large.hersey] [--only list,add]
 """
