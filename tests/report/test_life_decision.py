@@ -23,7 +23,9 @@ def fewer_draws(monkeypatch: pytest.MonkeyPatch) -> None:
 def row(age: tuple[float, float, float], passed: float) -> dict[str, Any]:
     """Of a specimen last seen at 170."""
     first = {"film": 0.83, "torque": 0.17}
-    return _row(SpecimenEnd("U", AgeAtLimit("U", Interval(*age), 0.0, 170.0, passed, followed=170.0), first, ()))
+    return _row(
+        SpecimenEnd("U", AgeAtLimit("U", Interval(*age), 0.0, 170.0, passed, followed=170.0), first, ())
+    )
 
 
 @pytest.mark.parametrize(
