@@ -241,7 +241,8 @@ def rows_of(
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the rows of some runs, which a column names, or of all."""
     for some in _blocks(runs):
-        yield from database.execute(f"{select} WHERE {_one_of(column, some)} {order}")
+        # Read as a whole: a cursor that an error leaves open would outlive the file.
+        yield from database.execute(f"{select} WHERE {_one_of(column, some)} {order}").fetchall()
 
 
 def _blocks(runs: Collection[int] | None) -> Iterator[Collection[int] | None]:
