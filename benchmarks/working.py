@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from importlib import import_module
 from typing import TypeVar
 
 from hersey.cli.workers import workers
@@ -32,4 +35,15 @@ def worked(task: Callable[[Item], R], items: Sequence[Item], given: Namespace) -
         os.environ.setdefault(variable, "1")
     here = given.scheduler is None and given.workers == 1
     with workers(given.scheduler, None if here or given.scheduler else given.workers) as client:
-        yield from in_order(done(task, items, client=client))
+        yield from in_order(done(task if here else _by_name(task), items, client=client))
+
+
+def _by_name(task: Callable[[Item], R]) -> Callable[[Item], R]:
+    """Return a task of the module that runs as that of the module by its name, which workers can load."""
+    if isinstance(task, partial):
+        return partial(_by_name(task.func), *task.args, **task.keywords)
+    spec = sys.modules["__main__"].__spec__
+    if task.__module__ != "__main__" or spec is None:
+        return task
+    found: Callable[[Item], R] = getattr(import_module(spec.name), task.__name__)
+    return found
