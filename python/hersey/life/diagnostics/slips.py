@@ -60,8 +60,9 @@ _FREEDOM = 4.0
 #: Gain of an age that is that of other specimens once it is corrected, of all of a specimen at most, and how
 #: much more the range of ages says of a specimen that was seen several times.
 _COINCIDES, _MOST, _SEEN = 2.0, 6.0, 1.5
-#: Gain per logarithm by which a small age lies closer to another of its specimen than half of what those of
-#: others do: nobody measures a new specimen twice in so short a time. Later some do. 10 times is suspect.
+#: Gain per logarithm by which two ages of a specimen lie closer together than half the usual gap, if they are
+#: small: a new specimen is rarely measured twice in so short a time, an old one sometimes is. And how many
+#: times closer the ages of an old one must lie before they count.
 _CROWDED, _CLOSER, _FAR_CLOSER = 3.0, 2.0, 10.0
 #: Share of ages that follow no schedule, and how far those that do lie from it, in the usual gap of two.
 _UNPLANNED, _ABOUT = 0.05, 0.5

@@ -203,7 +203,7 @@ def ages_of_each(
     never, passed = np.isinf(ages).mean(axis=0), (ages <= last).mean(axis=0)
     low, age, high = quantiles(ages)
     low = np.where(np.isinf(age), np.minimum(low, earliest), low)
-    seen = np.where(last > begun, last - begun, greatest)
+    seen = _age_followed(last, begun, greatest)
     low = np.where(seen > 0.0, np.minimum(low, begun + SURE * seen), low)
     high = np.where((seen > 0.0) & (age > begun + FAR * seen), math.inf, high)
     columns = (each.tolist() for each in (age, low, high, never, last, passed, begun, seen))
@@ -211,6 +211,11 @@ def ages_of_each(
         AgeAtLimit(name, Interval(*numbers[:3]), *numbers[3:])
         for name, *numbers in zip(names, *columns, strict=True)
     ]
+
+
+def _age_followed(last: FloatArray, begun: FloatArray, greatest: float) -> FloatArray:
+    """Age followed since each specimen ``begun`` to age; that of all where it was not seen since then."""
+    return np.where(last > begun, last - begun, greatest)
 
 
 def share_of_specimens(
@@ -255,8 +260,8 @@ class Earliest:
         Of a specimen seen only when new, up to that of all.
         """
         last, begun = (np.array(list(ages.values())) for ages in (followed.last, followed.begun))
-        since, most = np.maximum(last - begun, 0.0), SURE * followed.greatest
-        units = np.minimum(self.units, begun + np.where(since > 0.0, SURE * since, most))
+        most = SURE * followed.greatest
+        units = np.minimum(self.units, begun + SURE * _age_followed(last, begun, followed.greatest))
         return Earliest(units, *(min(each, most) for each in (self.first, self.b10, self.b50)))
 
     @classmethod

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hersey.arrays import BoolArray, FloatArray, IntArray
+from hersey.arrays import BoolArray, FloatArray
 from hersey.life.indicators.least_torque import DRAWS, RUNS, LeastTorque, alike_in_all, least_torque
 from hersey.life.indicators.load_cases import State
 from hersey.life.indicators.run_dwells import CampaignRuns
-from hersey.life.indicators.shared_kernel import shared_kernel
+from hersey.life.indicators.shared_kernel import evenly, shared_kernel
 from hersey.life.indicators.torque_surface import TorqueSurface
 from hersey.schema.warning import Warning
 
@@ -135,7 +135,7 @@ def at_states(
     speed = np.array([state.speed for state in states])
     temperature = np.array([np.nan if state.temperature is None else state.temperature for state in states])
     places = np.flatnonzero(runs.enough)
-    some, alike = (_spread_over(places, most) for most in (drawn, RUNS))
+    some, alike = (set(places[evenly(places.size, most)].tolist()) for most in (drawn, RUNS))
     curves = [_empty(runs, temperature) for temperature in temperatures]
     leasts: list[list[LeastTorque]] = [[] for _ in curves]
     rests: dict[tuple[int, bool], FloatArray] = {}  # by object: runs of the same rest share it
@@ -161,11 +161,6 @@ def at_states(
     return AtStates(
         runs, tuple(states), belt, belt_error, drive, drive_error, outside, factor, kelvin, put_back
     )
-
-
-def _spread_over(places: IntArray, most: int) -> set[int]:
-    """So many of the places at the most, evenly spread."""
-    return set(places[np.linspace(0, places.size - 1, min(most, places.size)).round().astype(int)].tolist())
 
 
 def _put_back(curves: Curves, leasts: list[LeastTorque]) -> Curves:
@@ -195,13 +190,14 @@ def _trace(
     if np.count_nonzero(near) < 3 or not surface.covers(temperature):
         return None
     speed = curves.speed[near]
-    curves.torque[place, near] = surface.curve(speed, temperature)
+    median = surface.curve(speed, temperature)
+    curves.torque[place, near] = median
     drawn = surface.drawn(speed, temperature, DRAWS, seed=0) if keep or together else None
     if keep:
         of_all = np.full((DRAWS, curves.speed.size), np.nan)
         of_all[:, near] = drawn
         curves.drawn[place] = of_all
-    least = least_torque(surface, speed, temperature, drawn)
+    least = least_torque(surface, speed, temperature, median, drawn)
     curves.below[place], curves.above[place] = least.below, least.above
     curves.least[place], curves.error[place] = np.exp(least.log_speed), least.error
     return least

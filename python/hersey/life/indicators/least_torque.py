@@ -38,12 +38,19 @@ class LeastTorque(NamedTuple):
 
 
 def least_torque(
-    surface: TorqueSurface, speed: FloatArray, temperature: float, drawn: FloatArray | None
+    surface: TorqueSurface,
+    speed: FloatArray,
+    temperature: float,
+    median: FloatArray,
+    drawn: FloatArray | None,
 ) -> LeastTorque:
-    """Return the least torque of a surface at speeds in rad/s; with draws of its curve, what is alike."""
+    """Return the least torque of the ``median`` curve of a surface against speeds in rad/s.
+
+    With draws of the curve also what is alike in all runs.
+    """
     at = np.log(speed)
     repeated = surface.repeated(speed, temperature, DRAWS, seed=0)
-    least, where = _least(at, np.vstack([surface.curve(speed, temperature), repeated]))
+    least, where = _least(at, np.vstack([median, repeated]))
     below, above = bool(where[0] == 0), bool(where[0] == at.size - 1)
     if below or above:
         return LeastTorque(np.nan, np.nan, np.nan, np.nan, below, above)

@@ -35,7 +35,7 @@ def shared_kernel(runs: Sequence[RunDwells]) -> Kernel:
     enough = [run for run in runs if run.speed.size >= FEWEST]
     if not enough:
         raise InsufficientDataError(f"no run has {FEWEST} dwells, so torque between them cannot be estimated")
-    used = (vars(_thinned(enough[i])).values() for i in _evenly(len(enough), _RUNS))
+    used = (vars(_thinned(enough[i])).values() for i in evenly(len(enough), _RUNS))
     return _kernel_of(tuple(tuple(values.tobytes() for values in run) for run in used))
 
 
@@ -77,10 +77,10 @@ def _kernel(numbers: FloatArray) -> Kernel:
 
 
 def _thinned(run: RunDwells) -> RunDwells:
-    keep = _evenly(run.speed.size, _DWELLS)
+    keep = evenly(run.speed.size, _DWELLS)
     return RunDwells(*(values[keep] for values in vars(run).values()))
 
 
-def _evenly(count: int, most: int) -> list[int]:
-    """Places of so many at most, evenly spread."""
+def evenly(count: int, most: int) -> list[int]:
+    """Return places of so many at the most, evenly spread."""
     return sorted({round(place) for place in np.linspace(0, count - 1, min(count, most)).tolist()})

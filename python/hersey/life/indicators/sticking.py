@@ -20,6 +20,7 @@ from hersey.damping.surface import WITH_TRANSITION
 from hersey.errors import ParameterError, UnfinishedError
 from hersey.life.indicator import NOT_JUDGED, Indicator
 from hersey.life.indicators.at_states import AtStates, Curves
+from hersey.life.indicators.shared_kernel import evenly
 from hersey.motion.drag import DragTable
 from hersey.schema.warning import Warning
 from hersey.stability.hysteresis import fold
@@ -79,8 +80,7 @@ def folds(estimates: AtStates, machine: Machine) -> tuple[list[Indicator], list[
     for temperature, name in by_temperature.items():
         curves = curve_at(estimates, temperature)
         falling = np.flatnonzero(np.isfinite(curves.least))
-        most = min(falling.size, MOST_FOLDS)
-        chosen = falling[np.linspace(0, falling.size - 1, most).round().astype(int)].tolist()
+        chosen = falling[evenly(falling.size, MOST_FOLDS)].tolist()
         speed = np.full(curves.least.shape, np.nan)
         for place in chosen:
             speed[place] = _fold(machine.train, drag_of(estimates, curves, place, machine))
