@@ -11,6 +11,7 @@ import pytest
 
 from hersey.arrays import FloatArray, IntArray
 from hersey.life.film.common_to_runs import Common, fitted_together
+from hersey.life.film.layer import interpolated
 from hersey.life.film.run_search import COMMON, COMMON_ENDS, OWN
 from hersey.life.film.shares import SHARES, StarvesAt, by_share, other_drag, slower_by_share
 from hersey.life.film.starved_drag import FREE
@@ -143,3 +144,11 @@ def test_ages_at_other_shares_are_those_factors_of_the_likeliest() -> None:
     values, counts = np.unique(factors, return_counts=True)
     assert values == pytest.approx([0.6, 1.0, 1.2])  # the age that is not known changes nothing
     assert counts / factors.size == pytest.approx([0.2, 0.5, 0.3], abs=0.02)
+
+
+def test_rows_are_interpolated_as_numpy_does() -> None:
+    random = np.random.default_rng(2)
+    places, values = np.cumsum(random.uniform(0.1, 1.0, (5, 7)), axis=1), random.normal(size=(5, 7))
+    at = np.array([-3.0, places[1, 2], 0.5 * (places[2, 3] + places[2, 4]), places[3, 0] + 0.01, 99.0])
+    expected = [np.interp(x, *row) for x, *row in zip(at, places, values, strict=True)]
+    assert interpolated(at, places, values) == pytest.approx(expected)

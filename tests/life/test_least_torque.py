@@ -60,6 +60,17 @@ def test_what_is_left_of_smoothing_is_within_its_error(noise: float) -> None:
     assert abs(away - moved) < left
 
 
+def test_repeated_curves_spread_as_those_of_repeated_runs() -> None:
+    """At every speed, also at the ends, where the trend alone holds: 240 runs against 400 draws of one."""
+    dwells = runs(0.02, 240)
+    kernel = shared_kernel(dwells)
+    surfaces = [TorqueSurface(each, kernel) for each in dwells]
+    spread = np.std([np.log(each.curve(GRID, np.nan)) for each in surfaces], axis=0, ddof=1)
+    drawn = np.log(surfaces[0].repeated(GRID, np.nan, 400, seed=1)).std(axis=0, ddof=1)
+    assert np.median(drawn / spread) == pytest.approx(1.0, abs=0.1)
+    assert drawn == pytest.approx(spread, rel=0.3)
+
+
 def test_what_is_alike_in_all_is_a_median_and_a_third_of_the_rest() -> None:
     """0.05 in all and 0.03 by noise leave 0.04 between the dwells."""
     known = [LeastTorque(1.0, 0.03, 0.05, moved, False, False) for moved in (0.01, 0.02, 0.09)]

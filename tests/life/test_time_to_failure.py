@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,10 @@ from hersey.life.growth import limit_ages, marginal
 from hersey.life.growth.fit import fit_growth
 from hersey.life.growth.limit_ages import age_at_limit, percent, rounded
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators, OwnAges, Runs
+from hersey.life.maintenance import Followed
 from hersey.life.time_to_failure import ageing, joined, next_run
 from hersey.life.time_to_failure.estimate import TimeToFailure, time_to_failure
+from hersey.life.time_to_failure.first import ends_of_specimens
 from hersey.schema.warning import Warning
 from tests.life.shipped import fewer
 
@@ -420,3 +423,31 @@ def test_of_a_specimen_seen_only_when_new_no_more_is_shown_than_of_the_others() 
     assert new.age.age.low <= 1.75 * 30.0
     assert (new.age.age.high, own.age.high) == (math.inf, math.inf)
     assert own.age.low <= 1.75 * 30.0
+
+
+def test_where_most_draws_never_come_the_interval_begins_at_the_earliest_age() -> None:
+    ages = np.where(np.arange(100) < 2, 900.0, np.inf)
+    assert limit_ages.age_at_limit("U", ages, earliest=700.0).age.low == 700.0
+    assert limit_ages.age_at_limit("U", ages, earliest=800.0, greatest=400.0).age.low == 1.75 * 400.0
+
+
+@pytest.mark.parametrize(
+    ("share", "later", "close"), [(25, 1.24, True), (15, 1.24, False), (25, 1.26, False)]
+)
+def test_a_mode_is_close_that_may_come_soon_after_the_first(share: int, later: float, close: bool) -> None:
+    """From 20 % of the draws on in which it comes up to 25 % later."""
+    first, second = np.full((100, 1), 100.0), np.full((100, 1), 1000.0)
+    second[:share] = later * 100.0
+    followed = Followed.from_new({"U": 80.0})
+    ways: list[Any] = [
+        SimpleNamespace(
+            ages=ages,
+            order=np.argsort(ages, axis=0, kind="stable"),
+            earliest=limit_ages.Earliest.unknown(1),
+            followed=followed,
+            mode=SimpleNamespace(name=name),
+        )
+        for name, ages in (("torque", first), ("film", second))
+    ]
+    ends, _ = ends_of_specimens(ways, np.eye(2), ["U"], followed.last, np.random.default_rng(0))
+    assert ends[0].near == (("torque", "film") if close else ("torque",))
