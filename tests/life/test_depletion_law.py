@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ import pytest
 from hersey import _core
 from hersey.arrays import FloatArray, pointwise
 from hersey.life.film.depletion_draws import fit_depletion
-from hersey.life.film.depletion_law import Rates, scale
+from hersey.life.film.depletion_law import EVAPORATED, LAYER_NEW, LOSS, POWER, Depletion, Rates, scale
 from hersey.life.film.layer import Layers
 from hersey.life.film.starved_drag import film_of, flooded
 from hersey.life.oil_layer import (
@@ -156,3 +158,23 @@ def test_both_laws_of_starvation_agree_where_the_layer_is_the_film(sharpness: fl
 def test_the_usual_sharpness_is_that_of_the_film() -> None:
     usual = inspect.signature(film_thickness).parameters["starvation_sharpness"].default
     assert usual == USUAL_SHARPNESS
+
+
+def test_rates_give_the_loss_of_a_layer_as_thick_as_the_flooded_film() -> None:
+    """At that layer ln h falls by the loss of the specimen, and K h0^2 (h/h0)^p/2 + e is that loss."""
+    own = np.zeros(10)
+    own[[LAYER_NEW, LOSS, EVAPORATED, POWER]] = 0.7, np.log(1.3), -0.4, np.log(0.8)
+    ages = np.linspace(0.0, 2.0, 200_001)
+    layer = Rates().layer(own, ages)
+    at = int(np.argmin(np.abs(layer)))
+    assert 0 < at < ages.size - 1
+    assert (layer[at + 1] - layer[at - 1]) / (ages[at + 1] - ages[at - 1]) == pytest.approx(-1.3, rel=1e-4)
+    contact, lubricant = film_of(shipped.machine())
+    point = flooded(contact, lubricant, np.array([COLD[0]]), np.array([COLD[1]]))
+    specimens: Any = SimpleNamespace(rates=Rates(), reference=point, greatest_age=5.0)
+    rate = Depletion.rate(specimens, own)
+    film = float(np.exp(scale(point)).item())
+    new = film * np.exp(0.7)
+    by_flow = rate["K"].item() * new**2 * (film / new) ** rate["p"].item() / 2.0
+    assert by_flow + rate["e"].item() == pytest.approx(1.3 / 5.0)
+    assert rate["e"].item() == pytest.approx(1.3 / 5.0 / (1.0 + np.exp(0.4)))

@@ -16,7 +16,7 @@ from hersey.life.age import Age
 from hersey.life.campaign import Campaign, Entry
 from hersey.life.campaign.conversion import entry_of
 from hersey.life.indicator import NOT_JUDGED, Indicator, Indicators
-from hersey.life.indicators import sticking
+from hersey.life.indicators import at_states, sticking
 from hersey.life.indicators.of_campaign import indicators_of
 from hersey.life.indicators.sticking import stick_speed_at
 from hersey.life.indicators.torque_surface import RunDwells
@@ -115,6 +115,20 @@ def test_the_torque_of_the_motor_at_both_corners(campaign: Campaign) -> None:
     assert "127.3 rpm and 60 degC" in str(state)
     assert (beyond.kind, beyond.values["count"], beyond.values["runs"]) == ("extrapolated", 1, 12)
     assert "U4 at 170000 pages, 1.34 times the speed of the nearest dwell" in str(beyond)
+
+
+def test_what_the_least_torque_of_all_runs_has_in_common_is_an_error_of_the_limit(
+    campaign: Campaign, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That of the speed sensor and it, added as squares; the speeds are put back."""
+    name = "stick-slip, thick paper"
+    monkeypatch.setattr(at_states, "alike_in_all", lambda _: (0.0, 0.0))
+    alone = named(in_use.__wrapped__(campaign), name)
+    monkeypatch.setattr(at_states, "alike_in_all", lambda _: (0.03, 0.07))
+    common = named(in_use.__wrapped__(campaign), name)
+    assert alone.limit_error > 0.0
+    assert common.limit_error**2 - alone.limit_error**2 == pytest.approx(0.07**2)
+    assert common.value == pytest.approx(alone.value * 0.9704455, nan_ok=True)  # exp(-0.03)
 
 
 def test_the_coldest_start_is_that_of_the_machine(campaign: Campaign) -> None:
